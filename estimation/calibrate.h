@@ -1,0 +1,56 @@
+// Calibration: timed renders of random object clusters, whole frames and baked impostors (thesis 5.8.1, Fig. 5.5 and 5.6), a non-negative
+// robust fit (the only Ceres), held-out error and a conformal upper bound.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "estimation/time_model.h"
+#include "render/base/work.h"
+#include "render/device/frame_timer.h"
+
+namespace standin {
+
+/// One timed frame; `group` is the scene it came from (the bound leaves one out at a time).
+struct TimedFrame {
+  Features features;  // estimate for its view; pixel terms before capping
+  double milliseconds = 0.0;
+  std::uint32_t group = 0;
+};
+
+struct CalibrationOptions {
+  double seconds = 45.0;  // of timed renders, all scenes together
+  double coverage = 0.99;
+  std::uint64_t seed = 1;
+};
+
+/// Timed frames of one scene: clusters, whole frames (with and without impostors).
+[[nodiscard]] std::vector<TimedFrame> sample_frames(const Scene& scene, std::uint32_t group, Context& context, FrameTimer& timer,
+                                                    const Camera& camera, const CalibrationOptions& options, const WorkBudget& budget);
+
+struct FitSummary {
+  TimeModel model;
+  std::string stopped;  // how the solver ended
+  std::uint32_t frames = 0;
+  double median_error = 0.0;  // held out, relative
+  double p90_error = 0.0;
+  double measured_coverage = 0.0;  // held out
+  double bound_over_measured_median = 0.0;
+  std::vector<std::string> left_out;
+};
+
+/// Deterministic. Throws Failure(kBadUsage) naming the row for a time that is not finite and positive, or when there are too few frames.
+[[nodiscard]] FitSummary fit_time_model(const std::vector<TimedFrame>& frames, double coverage);
+
+/// How a model does on frames it has not seen (calibrate --evaluate).
+struct Evaluation {
+  std::uint32_t frames = 0;
+  double median_error = 0.0;
+  double p90_error = 0.0;
+  double coverage = 0.0;
+  std::uint32_t misses = 0;
+  double bound_over_measured_median = 0.0;
+};
+[[nodiscard]] Evaluation evaluate(const TimeModel& model, const std::vector<TimedFrame>& frames);
+
+}  // namespace standin

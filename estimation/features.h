@@ -1,0 +1,65 @@
+// Features of a frame that are known without rendering it (thesis 5.2.1, 5.8.1): what the time model multiplies.
+//
+// Features are additive over what is drawn. For a single view they are estimates; for a region they are upper bounds over all its views
+// that come no nearer than `nearest_m` to the object's bounds, and monotone: falling in `nearest_m`. Pixel terms are counted before the
+// depth test; the model caps their sum (time_model.h).
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <string_view>
+
+#include "render/impostor/impostor.h"
+#include "render/scene/scene.h"
+#include "render/view/camera.h"
+
+namespace standin {
+
+enum class Term : std::size_t {
+  kFrame,              // 1 per frame
+  kDraws,              // draw calls
+  kTextureSwitches,    // real changes of the bound texture
+  kTriangles,          // submitted triangles
+  kOnScreenTriangles,  // of these, inside the frustum (the rest is clipped early)
+  kCoveringTriangles,  // sum over triangles of min(1, pixels per triangle)
+  kPlainPixels,        // generated pixels without texture
+  kTexturedPixels,
+  kMaskedPixels,    // alpha-tested: no early depth test
+  kImpostorPixels,  // nearest filtering, masked
+  kCount
+};
+inline constexpr std::size_t kTermCount = static_cast<std::size_t>(Term::kCount);
+[[nodiscard]] std::string_view term_name(Term term);  // "draws" ...
+[[nodiscard]] bool is_pixel_term(Term term);
+
+struct Features {
+  std::array<double, kTermCount> value{};
+  double& operator[](Term term) { return value[static_cast<std::size_t>(term)]; }
+  double operator[](Term term) const { return value[static_cast<std::size_t>(term)]; }
+  Features& operator+=(const Features& other) {
+    for (std::size_t i = 0; i < kTermCount; ++i) value[i] += other.value[i];
+    return *this;
+  }
+};
+
+/// Estimate for one view; all zero when the object's bounds miss the frustum.
+[[nodiscard]] Features object_features(const Scene& scene, std::uint32_t object, const View& view, const Camera& camera);
+/// Upper bound over all views whose position is at least `nearest_m` >= 0 from the object's bounds.
+[[nodiscard]] Features object_features_bound(const Scene& scene, std::uint32_t object, double nearest_m, const Camera& camera);
+
+/// What is known of an impostor's drawing cost: of a baked one, or of a candidate's estimate.
+struct ImpostorCost {
+  double quads = 0.0;
+  double texels = 0.0;           // of all quads
+  double texel_angle_rad = 0.0;  // greatest angle of a texel seen from the nearest point of the view cell
+};
+[[nodiscard]] ImpostorCost impostor_cost(const Impostor& impostor);
+/// Upper bound over all views in the impostor's view cell at distance >= nearest_m from the represented objects. One draw; no switch
+/// (charged once per atlas page and frame).
+[[nodiscard]] Features impostor_features_bound(const ImpostorCost& cost, const Camera& camera);
+/// Estimate for one view, pixels scaled to its distance from the objects' bounds, zero outside the frustum.
+[[nodiscard]] Features impostor_features(const Impostor& impostor, const Box& objects_bounds, const View& view, const Camera& camera);
+/// Features of an empty frame.
+[[nodiscard]] Features frame_features();
+
+}  // namespace standin

@@ -1,0 +1,73 @@
+// The rendering-time model of one target machine (thesis 5.2.1, 5.8.1): milliseconds as a non-negative linear function of Features, with an
+// upper bound of stated coverage.
+//
+// predicted = sum over non-pixel terms + min(sum over pixel terms, pixel_cap_ms): opaque objects are drawn front to back, so a frame's
+// pixel work saturates (a region's bound must choose one of the two linear forms beforehand: Cost keeps them apart). bound =
+// bound_factor(predicted) * predicted, conformal (split by scene), made monotone and inverted once: placement sees a single predicted-time
+// budget.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "estimation/features.h"
+
+namespace standin {
+
+/// Predicted milliseconds of something drawn, its two parts kept apart; adds up.
+struct Cost {
+  double fixed_ms = 0.0;  // draws, switches, triangles
+  double pixel_ms = 0.0;
+  Cost& operator+=(const Cost& other) {
+    fixed_ms += other.fixed_ms;
+    pixel_ms += other.pixel_ms;
+    return *this;
+  }
+};
+
+/// bound = factor * predicted for predicted < until_ms (the last entry: infinity). The product is non-decreasing.
+struct BoundStep {
+  double until_ms = 0.0;
+  double factor = 1.0;
+};
+
+struct TimeModel {
+  std::array<double, kTermCount> milliseconds_per_unit{};  // >= 0
+  double pixel_cap_ms = 0.0;                               // infinity: no cap
+  std::vector<BoundStep> bound_steps;
+  double coverage = 0.99;  // stated, for frames exchangeable with the calibration set
+
+  [[nodiscard]] Cost cost(const Features& features) const;
+  [[nodiscard]] double predicted_ms(const Cost& frame) const;  // fixed + min(pixel, cap)
+  [[nodiscard]] double bound_ms(double predicted_ms) const;
+  /// Largest predicted time whose bound is within the budget; < 0 if none.
+  [[nodiscard]] double predicted_budget_ms(double budget_ms) const;
+};
+
+/// A target file (JSON): the model, the machine it was measured on, and how well it did.
+struct Target {
+  std::string id;      // "osmesa-llvmpipe-..."; readable
+  std::string sha256;  // of the file's bytes; filled when read
+  TimeModel model;
+  std::string device;    // "osmesa" | "egl"
+  std::string renderer;  // GL_RENDERER
+  std::string gl_version;
+  std::string processor;      // model name; another one is a warning only
+  double reference_ms = 0.0;  // reference frame at calibration
+  // Held-out quality, for the report.
+  std::uint32_t samples = 0;
+  double median_error = 0.0;  // relative
+  double p90_error = 0.0;
+  double measured_coverage = 0.0;
+  std::vector<std::string> left_out;  // terms the data could not support, with the reason
+};
+
+/// Throws Failure(kFileMissing, kFileBroken, kTargetUnreadable).
+[[nodiscard]] Target read_target(const std::filesystem::path& file);
+/// Whole or not at all.
+void write_target(const Target& target, const std::filesystem::path& file);
+
+}  // namespace standin

@@ -1,0 +1,77 @@
+// Impostor candidates (thesis 5.6): hierarchy nodes x shafts, generated from the problem views they serve.
+//
+// The blind product of nodes, apex angles, directions and distances has 2.4e8 members; we start from the (node, cell) pairs that can gain
+// something and ask which shafts enclose the cell. Each shaft is then tightened: axis, aperture and near plane shrink to the cells served
+// (2x less memory for nothing, simulation.md). Candidates with the same node and cells are duplicates; hopeless ones (too many layers, no
+// gain) are dropped in O(1) from the closed-form layer count.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "placement/view_space/subdivision.h"
+#include "render/impostor/bake.h"
+#include "render/scene/hierarchy.h"
+
+namespace standin {
+
+enum class CellShape { kShaft, kBox };
+
+struct CandidateOptions {
+  std::vector<double> apex_deg = {11.25, 22.5, 45.0, 90.0};
+  double direction_step_deg = 11.25;
+  CellShape shape = CellShape::kShaft;  // kBox: nodes of the view space grid (thesis test 13)
+  int threads = 1;
+};
+
+/// Memory and drawing cost from a sketch (layers, texture size, what is in it), fitted on real bakes of the scene at hand: the paper's
+/// two-variable heuristic (5.8.1), ours in log space. bytes = exp(b0 + b1 log S + b2 log N), S: silhouette texels, N: layers; quads
+/// likewise.
+struct SizeModel {
+  std::array<double, 3> log_bytes{};
+  std::array<double, 3> log_quads{};
+  double median_error = 0.0;  // held out, relative, of bytes
+  std::uint32_t bakes = 0;
+};
+
+struct Candidate {
+  std::uint32_t node = 0;  // of the hierarchy
+  ViewCell view_cell;
+  std::vector<std::uint32_t> cells;    // served, ascending ids of Subdivision::cells
+  std::vector<std::uint32_t> objects;  // of the node, visible from a served cell, ascending
+  double bytes = 0.0;                  // estimated texture bytes
+  ImpostorCost cost;                   // estimated
+};
+
+struct CandidateSet {
+  std::vector<Candidate> candidates;  // deterministic order
+  std::uint64_t generated = 0;        // before pruning
+  std::uint64_t duplicates = 0;
+  std::uint64_t impossible = 0;  // too many layers, cluster in the cell
+  std::uint64_t hopeless = 0;    // no gain anywhere
+};
+
+[[nodiscard]] CandidateSet generate_candidates(const Scene& scene, const Hierarchy& hierarchy, const Subdivision& subdivision,
+                                               const TimeModel& model, const SizeModel& sizes, const Camera& camera,
+                                               const BakeQuality& quality, const CandidateOptions& options, const WorkBudget& budget);
+
+/// Bakes a spread of `count` candidates and fits the size model (deterministic).
+[[nodiscard]] SizeModel fit_size_model(const Scene& scene, const std::vector<Candidate>& candidates, const Camera& camera,
+                                       const BakeQuality& quality, std::uint32_t count, std::uint64_t seed, int threads,
+                                       const WorkBudget& budget);
+/// A size model to start from, before anything was baked.
+[[nodiscard]] SizeModel default_size_model();
+
+/// Lowest predicted time each CPV can be brought to by any disjoint candidates (tree DP: V(node) = max(best own gain, sum of V(children))),
+/// each candidate a shaft tight around the CPV's own cell. One value per CPV; `blockers` names the objects that make up most of what is
+/// left.
+struct Reach {
+  std::vector<double> predicted_ms;                  // per CPV
+  std::vector<std::vector<std::uint32_t>> blockers;  // per CPV, at most 5 objects, largest first
+};
+[[nodiscard]] Reach reachable_times(const Scene& scene, const Hierarchy& hierarchy, const Subdivision& subdivision, const TimeModel& model,
+                                    const SizeModel& sizes, const Camera& camera, const BakeQuality& quality,
+                                    const CandidateOptions& options, const WorkBudget& budget);
+
+}  // namespace standin

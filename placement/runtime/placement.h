@@ -1,0 +1,78 @@
+// The placement as a renderer uses it: for any view, which impostors and which originals to draw. The in-memory form of placement.json, and
+// the lookup that verification uses is the one that ships.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "placement/view_space/view_space.h"
+#include "render/impostor/impostor.h"
+#include "render/view/direction_interval.h"
+
+namespace standin {
+
+struct PlacementCell {
+  CellKey key;
+  Box box;
+  std::int32_t visible_set = -1;  // -1: all objects
+};
+
+struct PlacementCpv {
+  std::uint32_t cell = 0;
+  std::uint32_t interval = 0;
+  double bound_before_ms = 0.0;
+  double bound_after_ms = 0.0;
+  bool solved = false;
+  std::vector<std::uint32_t> impostors;  // ascending; they stand for disjoint sets of objects
+};
+
+struct PlacementImpostor {
+  std::string technique = "layered";
+  std::string guarantee = "nearest";
+  std::vector<std::uint32_t> objects;
+  ViewCell view_cell;
+  ImpostorFrame frame;
+  std::vector<Layer> layers;
+  std::uint32_t quads = 0;
+  std::uint64_t texture_bytes = 0;
+  std::uint64_t geometry_bytes = 0;
+  double time_bound_ms = 0.0;  // at the nearest point of its view cell
+};
+
+struct Placement {
+  std::vector<PlacementCell> cells;          // sorted by key
+  std::vector<DirectionInterval> intervals;  // sorted
+  std::vector<PlacementCpv> cpvs;            // sorted by (cell, interval)
+  std::vector<std::vector<std::uint32_t>> visible_sets;
+  std::vector<PlacementImpostor> impostors;
+  Vec3 root_min{0.0};  // of the dyadic grid
+  double root_side_m = 0.0;
+};
+
+/// What to draw for one view.
+struct Lookup {
+  std::optional<std::uint32_t> cell;  // none: outside the view space
+  std::optional<std::uint32_t> cpv;   // none: originals only
+};
+
+/// Built once per placement; find() allocates nothing. Intervals and cells are half-open at the upper end, the last one closed.
+class PlacementIndex {
+ public:
+  explicit PlacementIndex(const Placement& placement);
+  [[nodiscard]] Lookup find(const Vec3& position, const Vec3& direction) const;
+
+ private:
+  const Placement* placement_;
+  std::vector<std::uint32_t> cpv_offset_;  // per cell + 1
+};
+
+/// Objects to draw as originals and impostors to draw, for a lookup's answer. `object_count` of the scene.
+struct ViewContent {
+  std::vector<std::uint32_t> objects;
+  std::vector<std::uint32_t> impostors;
+};
+[[nodiscard]] ViewContent content_of(const Placement& placement, const Lookup& lookup, std::uint32_t object_count);
+
+}  // namespace standin

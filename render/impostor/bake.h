@@ -1,0 +1,59 @@
+// From a bake request to an impostor, and what one would cost before it is baked.
+//
+// A request names objects, a view cell and the quality; plan_impostor() chooses the reference viewpoint, resolution and layers (closed
+// form, no rendering), bake() records, culls and cuts into quads (thesis 3.3-3.5). Both are pure functions: same request, same bytes, on
+// any thread. No GL.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "render/base/work.h"
+#include "render/impostor/impostor.h"
+#include "render/impostor/layers.h"
+
+namespace standin {
+
+struct BakeQuality {
+  double alpha_scale = 1.0;  // parallax limit in units of the centre pixel's angle
+  double texel_scale = 1.0;  // texel size in units of the centre pixel, at the nearest point of the view cell; > 0
+  std::uint32_t max_layers = 200;
+  std::uint32_t max_resolution = 4096;  // texels a side
+  std::uint32_t grid_texels = 8;        // box growing (thesis 3.5)
+  double fill_ratio = 0.8;
+  bool strict = true;      // layer set-up; false only for tests
+  bool supercover = true;  // closed coverage; false (centre sampling) only for tests
+};
+
+struct BakeRequest {
+  std::vector<std::uint32_t> objects;  // ascending ids, at least one
+  ViewCell view_cell;
+};
+
+/// Everything about an impostor that is known without recording.
+struct ImpostorPlan {
+  bool possible = false;
+  const char* why_not = "";  // "cluster reaches into the view cell", "too many layers", "texture too large"
+  ImpostorFrame frame;
+  std::vector<Layer> layers;
+};
+
+/// The objects' bounds are taken as one box in the frame of the view cell. Never throws for geometry: says why not.
+[[nodiscard]] ImpostorPlan plan_impostor(const Box& object_bounds, const ViewCell& cell, const Camera& camera, const BakeQuality& quality);
+
+/// The same question in O(1), for ranking: estimated number of layers and texture size. `layers` = infinity: impossible.
+struct ImpostorSketch {
+  double layers = 0.0;
+  double width_texels = 0.0;
+  double height_texels = 0.0;
+  double distance_m = 0.0;  // of the object's centre from the reference viewpoint
+};
+[[nodiscard]] ImpostorSketch sketch_impostor(const Box& object_bounds, const ViewCell& cell, const Camera& camera,
+                                             const BakeQuality& quality);
+
+/// Throws Failure(kImpostorImpossible) where plan_impostor says so. May return an impostor without quads (nothing visible).
+[[nodiscard]] Impostor bake_layered(const Scene& scene, const BakeRequest& request, const Camera& camera, const BakeQuality& quality,
+                                    const WorkBudget& budget = {});
+
+}  // namespace standin

@@ -1,0 +1,75 @@
+// Impostors as they are drawn: textured quads in the space of a reference viewpoint.
+//
+// An impostor stands for a set of objects, seen from anywhere in its view cell. Its frame has the reference viewpoint as origin and looks
+// along `forward` (= -axis of the shaft, or the box face's normal). A layer at distance A from the reference viewpoint is the rectangle { x
+// : dot(x - P, forward) = A }, whose texel (i, j) of `resolution` spans slopes [lo + i * step, lo + (i+1) * step] along right and [.. j ..]
+// along *down* (row 0 on top). Quads are rectangles of texels of one layer; opaque texels have alpha 255.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "render/scene/scene.h"
+#include "render/view/camera.h"
+#include "render/view/view_cell.h"
+
+namespace standin {
+
+/// Distances along `forward`, measured from the reference viewpoint (not from the near border, as math.md's t is).
+struct Layer {
+  double distance_m = 0.0;
+  double near_m = 0.0;  // the depth range it stands for
+  double far_m = 0.0;
+};
+
+/// Texels [x, x + width) x [y, y + height) of a layer.
+struct Quad {
+  std::uint32_t layer = 0;
+  std::uint32_t x = 0, y = 0;
+  std::uint32_t width = 0, height = 0;
+};
+
+struct ImpostorFrame {
+  Vec3 reference_viewpoint{0.0};
+  Vec3 forward{0.0, 0.0, -1.0};
+  Vec3 right{1.0, 0.0, 0.0};
+  Vec3 up{0.0, 1.0, 0.0};
+  Vec2 slope_min{0.0};      // of texel column 0's left edge (along right) and of row 0's top edge (along up, the maximum: rows go down)
+  Vec2 slope_step{0.0};     // > 0, per texel
+  std::uint32_t width = 0;  // texels per layer
+  std::uint32_t height = 0;
+};
+
+/// World position of the layer point at texel coordinates (x, y) (corners are integers).
+[[nodiscard]] inline Vec3 layer_point(const ImpostorFrame& frame, double distance_m, double x, double y) {
+  const double slope_right = frame.slope_min.x + x * frame.slope_step.x;
+  const double slope_up = frame.slope_min.y - y * frame.slope_step.y;
+  return frame.reference_viewpoint + distance_m * (frame.forward + slope_right * frame.right + slope_up * frame.up);
+}
+
+/// One baked layered impostor. `texels` holds the quads' RGBA8 blocks one after the other, rows from the top, straight alpha (0 or 255).
+struct Impostor {
+  std::vector<std::uint32_t> objects;  // ascending ids
+  ViewCell view_cell;
+  ImpostorFrame frame;
+  std::vector<Layer> layers;
+  std::vector<Quad> quads;
+  std::vector<std::uint8_t> texels;
+
+  [[nodiscard]] std::uint64_t texel_count() const { return texels.size() / 4; }
+};
+
+/// Where a quad's block lies in the atlas: texel (x, y) of page `page`; gutters are around it.
+struct AtlasSlot {
+  std::uint32_t page = 0;
+  std::uint32_t x = 0, y = 0;
+};
+
+/// Impostors with their atlases: what the device draws and what the GLB holds.
+struct ImpostorSet {
+  std::vector<Impostor> impostors;
+  std::vector<std::vector<AtlasSlot>> slots;  // slots[impostor][quad]
+  std::vector<Texture> pages;                 // colour dilated into transparent texels; masked at alpha 0.5
+};
+
+}  // namespace standin

@@ -1,0 +1,96 @@
+// The scene: what is drawn, as structs of arrays.
+//
+// An Object is a draw unit: one world transform and a range of Parts, each part one draw call (a mesh with a material). Objects that show
+// the same meshes share them (instances). Positions are float relative to the mesh, transforms are double, so that a scene far from its
+// origin keeps its precision. Everything is y up and in metres here, whatever the file was in (see Placing in load.h).
+//
+// Layout example, two objects of two and one parts:   objects: {first_part 0, part_count 2}, {2, 1};  parts: [p0 p1 p2]
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "render/base/geometry.h"
+
+namespace standin {
+
+/// RGBA8, rows from the top, straight alpha, colour values as stored in the file (sRGB encoded).
+struct Texture {
+  std::string name;
+  int width = 0;
+  int height = 0;
+  std::vector<std::uint8_t> rgba;  // width * height * 4
+};
+
+enum class AlphaMode { kOpaque, kMask };
+
+struct Material {
+  std::string name;
+  glm::vec4 base_colour{1.0F};
+  std::int32_t texture = -1;  // index into Scene::textures, -1: none
+  AlphaMode alpha_mode = AlphaMode::kOpaque;
+  float alpha_cutoff = 0.5F;
+  bool double_sided = true;
+  bool unlit = false;
+};
+
+/// Triangles; `normals` and `uvs` are as long as `positions`, or `uvs` is empty. Every index is in range and every value finite.
+struct Mesh {
+  std::string name;
+  std::vector<glm::vec3> positions;
+  std::vector<glm::vec3> normals;
+  std::vector<glm::vec2> uvs;          // v down, texture origin upper left (glTF)
+  std::vector<std::uint32_t> indices;  // 3 per triangle
+  Box bounds;                          // of positions, in mesh space
+  double area_m2 = 0.0;                // sum of the triangles' areas, in mesh space
+  [[nodiscard]] std::size_t triangle_count() const { return indices.size() / 3; }
+};
+
+struct Part {
+  std::uint32_t mesh = 0;
+  std::uint32_t material = 0;
+};
+
+struct Object {
+  std::string name;
+  std::string gltf_node;  // name of the node in the file it came from; "" where there is none
+  Mat4 world_from_object{1.0};
+  std::uint32_t first_part = 0;
+  std::uint32_t part_count = 0;
+  Box bounds;  // world
+  std::uint64_t triangle_count = 0;
+  double area_m2 = 0.0;  // world
+};
+
+/// What loading did to the file, for `standin info` (each entry: what, how many, why).
+struct LoadNote {
+  enum class Kind { kRepaired, kDropped, kChosen, kWarning } kind = Kind::kWarning;
+  std::string what;
+  std::uint64_t count = 0;
+  std::string why;
+};
+
+struct Scene {
+  std::string name;    // file name without folders
+  std::string sha256;  // of the main file's bytes, hex
+  std::vector<Texture> textures;
+  std::vector<Material> materials;
+  std::vector<Mesh> meshes;
+  std::vector<Part> parts;
+  std::vector<Object> objects;
+  Box bounds;
+  Mat4 world_from_file{1.0};  // the up and unit conversion that loading applied
+  std::vector<LoadNote> notes;
+
+  [[nodiscard]] std::uint64_t triangle_count() const {
+    std::uint64_t sum = 0;
+    for (const auto& object : objects) sum += object.triangle_count;
+    return sum;
+  }
+};
+
+/// Recomputes meshes' bounds and areas and objects' bounds, triangle counts and areas, and the scene's bounds.
+void update_derived(Scene& scene);
+
+}  // namespace standin

@@ -1,0 +1,45 @@
+// Rays against triangles, behind one header (the only file pair that includes Embree).
+//
+// Robust scenes (no leaks through shared edges); positions are stored relative to a local origin given in double. Alpha-masked texels count
+// as transparent where `honour_masks`. Instances are Embree instances. Thread-safe for queries.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "render/scene/scene.h"
+
+namespace standin {
+
+struct Hit {
+  double distance_m = 0.0;
+  std::uint32_t object = 0;
+};
+
+class Raytracer {
+ public:
+  struct Options {
+    bool honour_masks = true;
+    int threads = 1;
+  };
+  explicit Raytracer(const Scene& scene) : Raytracer(scene, Options{}) {}
+  Raytracer(const Scene& scene, const Options& options);
+  /// Only the named objects.
+  Raytracer(const Scene& scene, const std::vector<std::uint32_t>& objects, const Options& options);
+  ~Raytracer();
+  Raytracer(Raytracer&&) noexcept;
+  Raytracer& operator=(Raytracer&&) noexcept;
+
+  /// Nearest hit with distance in (from_m, infinity); `direction` of unit length. Ties: lowest object id.
+  [[nodiscard]] std::optional<Hit> nearest(const Vec3& origin, const Vec3& direction, double from_m = 0.0) const;
+  /// Every hit along the ray in [from_m, to_m], ascending.
+  [[nodiscard]] std::vector<Hit> all(const Vec3& origin, const Vec3& direction, double from_m, double to_m) const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace standin
