@@ -1,0 +1,19 @@
+// One row per error word: its stable name, the exit code of the command line and the HTTP status of the service.
+#pragma once
+
+#include <string_view>
+
+#include "render/base/error.h"
+
+namespace standin {
+
+struct ErrorRow {
+  ErrorWord word;
+  std::string_view name;  // stable; scripts and tests rely on it
+  int exit_code;          // 2: bad usage or input; 3: internal or environment failure
+  int http_status;
+};
+
+[[nodiscard]] const ErrorRow& error_row(ErrorWord word);
+
+}  // namespace standin

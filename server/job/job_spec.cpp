@@ -1,0 +1,298 @@
+#include "server/job/job_spec.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "render/base/error.h"
+
+namespace standin {
+namespace {
+
+using nlohmann::json;
+
+template <class T>
+json type_schema() {
+  if constexpr (std::is_same_v<T, std::string>)
+    return {{"type", "string"}};
+  else if constexpr (std::is_floating_point_v<T>)
+    return {{"type", "number"}};
+  else if constexpr (std::is_integral_v<T>)
+    return {{"type", "integer"}};
+  else if constexpr (std::is_same_v<T, std::vector<std::string>>)
+    return {{"type", "array"}, {"items", {{"type", "string"}}}};
+  else
+    return {{"type", "array"}, {"items", {{"type", "number"}}}};
+}
+
+// A row for a plain member; `range` is merged into the value's schema, and checked by set_field.
+template <class T>
+SpecField field(std::string key, std::string flag, T JobSpec::*member, std::string help, json range = json::object(),
+                bool in_result = true) {
+  json schema = type_schema<T>();
+  schema.update(range);
+  return {std::move(key),
+          std::move(flag),
+          std::move(help),
+          std::move(schema),
+          in_result,
+          [member](JobSpec& spec, const json& value) { spec.*member = value.get<T>(); },
+          [member](const JobSpec& spec) { return json(spec.*member); }};
+}
+
+json at_least(double least) {
+  return {{"minimum", least}};
+}
+json between(double least, double most) {
+  return {{"minimum", least}, {"maximum", most}};
+}
+json above(double limit, double most = std::numeric_limits<double>::infinity()) {
+  json range = {{"exclusiveMinimum", limit}};
+  if (most < std::numeric_limits<double>::infinity()) range["maximum"] = most;
+  return range;
+}
+json one_of(std::vector<std::string> words) {
+  return {{"enum", std::move(words)}};
+}
+
+Box box_from_json(const json& value) {
+  Box box;
+  for (int axis = 0; axis < 3; ++axis) {
+    box.min[axis] = value.at("min").at(axis).get<double>();
+    box.max[axis] = value.at("max").at(axis).get<double>();
+  }
+  return box;
+}
+
+json box_to_json(const Box& box) {
+  return {{"min", {box.min.x, box.min.y, box.min.z}}, {"max", {box.max.x, box.max.y, box.max.z}}};
+}
+
+SpecField boxes_field() {
+  const json corner = {{"type", "array"}, {"items", {{"type", "number"}}}, {"minItems", 3}, {"maxItems", 3}};
+  const json box = {{"type", "object"},
+                    {"required", {"min", "max"}},
+                    {"properties", {{"min", corner}, {"max", corner}}},
+                    {"additionalProperties", false}};
+  return {"view_space.boxes",
+          "",
+          "boxes of positions, world coordinates in metres (for view_space.kind = boxes; configuration file only)",
+          {{"type", "array"}, {"items", box}},
+          true,
+          [](JobSpec& spec, const json& value) {
+            spec.boxes.clear();
+            for (const auto& entry : value) {
+              const Box parsed = box_from_json(entry);
+              if (parsed.empty()) throw Failure(ErrorWord::kBadConfig, "a box with min > max: " + entry.dump());
+              spec.boxes.push_back(parsed);
+            }
+          },
+          [](const JobSpec& spec) {
+            json list = json::array();
+            for (const auto& entry : spec.boxes) list.push_back(box_to_json(entry));
+            return list;
+          }};
+}
+
+std::vector<SpecField> make_fields() {
+  const json positive = above(0.0);
+  return {
+      field("budget_ms", "--budget-ms", &JobSpec::budget_ms, "frame-time budget in milliseconds", at_least(0.0)),
+      field("scene.up", "--up", &JobSpec::up, "axis that points up in the scene file", one_of({"auto", "x", "y", "z"})),
+      field("scene.unit", "--unit", &JobSpec::unit, "unit of the scene file: auto, m, cm, mm, in or metres per unit"),
+      field("scene.split_triangles", "--split-triangles", &JobSpec::split_triangles, "split objects with more triangles; 0: never",
+            at_least(0)),
+      field("scene.split_extent", "--split-extent", &JobSpec::split_extent,
+            "split objects longer than this share of the scene's diagonal; 0: never", between(0, 1)),
+      field("scene.texture_folders", "--texture-folder", &JobSpec::texture_folders, "further folders to look for textures in", {}, false),
+      field("camera.fov_y_deg", "--fov-y-deg", &JobSpec::fov_y_deg, "vertical field of view in degrees", above(0.0, 150.0)),
+      field("camera.width", "--width", &JobSpec::width, "image width in pixels", between(16, 8192)),
+      field("camera.height", "--height", &JobSpec::height, "image height in pixels", between(16, 8192)),
+      field("view_space.kind", "--view-space", &JobSpec::view_space, "auto, walk, orbit, path:FILE or boxes",
+            {{"pattern", "^(auto|walk|orbit|boxes|path:.+)$"}}),
+      field("view_space.path_radius_m", "--path-radius-m", &JobSpec::path_radius_m, "half side of the boxes around a path's points",
+            positive),
+      boxes_field(),
+      field("view_space.leaf_m", "--leaf-m", &JobSpec::leaf_m, "side of a 3D leaf cell in metres", positive),
+      field("view_space.refine_levels", "--refine-levels", &JobSpec::refine_levels, "how often hot leaves are halved in position",
+            between(0, 6)),
+      field("view_space.interval_deg", "--interval-deg", &JobSpec::interval_deg, "width of a view direction interval in degrees",
+            between(1.0, 90.0)),
+      field("view_space.eye_height_m", "--eye-height-m", &JobSpec::eye_height_m, "eye height above the ground, walk only", positive),
+      field("view_space.max_leaves", "--max-leaves", &JobSpec::max_leaves, "leaves grow until there are fewer", between(1, 10'000'000)),
+      field("visibility.mode", "--visibility", &JobSpec::visibility, "auto (where a probe finds occlusion), on or off",
+            one_of({"auto", "on", "off"})),
+      field("visibility.rays", "--visibility-rays", &JobSpec::visibility_rays, "rays per 3D leaf", between(1, 1e9)),
+      field("candidates.apex_deg", "--apex-deg", &JobSpec::apex_deg, "apex angles of shafts in degrees", {{"minItems", 1}}),
+      field("candidates.direction_step_deg", "--direction-step-deg", &JobSpec::direction_step_deg, "step of shaft directions in degrees",
+            between(1.0, 90.0)),
+      field("candidates.cell_shape", "--cell-shape", &JobSpec::cell_shape, "shape of view cells", one_of({"shaft", "box"})),
+      field("impostors.techniques", "--techniques", &JobSpec::techniques, "impostor techniques", one_of({"layered"})),
+      field("impostors.alpha_scale", "--alpha-scale", &JobSpec::alpha_scale, "parallax limit in centre pixels", between(0.1, 16.0)),
+      field("impostors.texel_scale", "--texel-scale", &JobSpec::texel_scale, "texel size in centre pixels", between(0.1, 16.0)),
+      field("impostors.max_layers", "--max-layers", &JobSpec::max_layers, "layers an impostor may have; 0: 200 for walk, 400 for orbit",
+            between(0, 10'000)),
+      field("select.exchange_rounds", "--exchange-rounds", &JobSpec::exchange_rounds, "rounds of exchange after reverse-delete",
+            between(0, 100)),
+      field("select.bound_iterations", "--bound-iterations", &JobSpec::bound_iterations,
+            "subgradient steps of the lower bound; 0: no bound", between(0, 100'000)),
+      field("select.bake_rounds", "--bake-rounds", &JobSpec::bake_rounds, "rounds of baking and repair", between(1, 20)),
+      field("select.size_bakes", "--size-bakes", &JobSpec::size_bakes, "impostors baked to fit the size model; 0: default model",
+            between(0, 10'000)),
+      field("device", "--device", &JobSpec::device, "off-screen device", one_of({"osmesa", "egl"}), false),
+      field("survey.views", "--survey-views", &JobSpec::survey_views, "sampled single views", between(1, 1e8)),
+      field("verify.views", "--verify-views", &JobSpec::verify_views, "views that place renders for verification", between(0, 100'000),
+            false),
+      field("seed", "--seed", &JobSpec::seed, "seed of everything random", at_least(0)),
+      field("force", "--force", &JobSpec::force, "stages to run although they could be left out", {}, false),
+      field("threads", "--threads", &JobSpec::threads, "threads; 0: one per processor", between(0, 1024), false),
+  };
+}
+
+std::string type_of(const json& value) {
+  return value.type_name();
+}
+
+[[noreturn]] void reject(const std::string& place, const json& value, const std::string& constraint) {
+  throw Failure(ErrorWord::kBadConfig, place + " = " + value.dump() + " violates: " + constraint);
+}
+
+void check_type(const json& schema, const json& value, const std::string& place) {
+  const std::string type = schema.at("type");
+  const bool ok = (type == "string" && value.is_string()) || (type == "number" && value.is_number()) ||
+                  (type == "integer" &&
+                   (value.is_number_integer() || (value.is_number_float() && value.get<double>() == std::floor(value.get<double>())))) ||
+                  (type == "array" && value.is_array()) || (type == "object" && value.is_object());
+  if (!ok) reject(place, value, "a value of type " + type + ", got " + type_of(value));
+}
+
+void check_number(const json& schema, const json& value, const std::string& place) {
+  const double number = value.get<double>();
+  if (!std::isfinite(number)) reject(place, value, "a finite number");
+  if (schema.contains("minimum") && number < schema["minimum"]) reject(place, value, ">= " + schema["minimum"].dump());
+  if (schema.contains("exclusiveMinimum") && number <= schema["exclusiveMinimum"])
+    reject(place, value, "> " + schema["exclusiveMinimum"].dump());
+  if (schema.contains("maximum") && number > schema["maximum"]) reject(place, value, "<= " + schema["maximum"].dump());
+}
+
+void check_string(const json& schema, const json& value, const std::string& place) {
+  if (schema.contains("enum") && std::ranges::find(schema["enum"], value) == schema["enum"].end())
+    reject(place, value, "one of " + schema["enum"].dump());
+}
+
+void check_value(const json& schema, const json& value, const std::string& place) {
+  check_type(schema, value, place);
+  if (value.is_number()) check_number(schema, value, place);
+  if (value.is_string()) check_string(schema, value, place);
+  if (!value.is_array()) return;
+  if (schema.contains("minItems") && value.size() < schema["minItems"])
+    reject(place, value, "at least " + schema["minItems"].dump() + " items");
+  if (schema.contains("maxItems") && value.size() > schema["maxItems"])
+    reject(place, value, "at most " + schema["maxItems"].dump() + " items");
+  for (std::size_t i = 0; i < value.size(); ++i) check_value(schema.at("items"), value[i], place + "[" + std::to_string(i) + "]");
+}
+
+json::json_pointer pointer_of(const std::string& key) {
+  std::string path = "/" + key;
+  for (auto& c : path)
+    if (c == '.') c = '/';
+  return json::json_pointer(path);
+}
+
+const SpecField* find_field(const std::string& key) {
+  for (const auto& field : spec_fields())
+    if (field.key == key) return &field;
+  return nullptr;
+}
+
+bool is_section(const std::string& key) {
+  for (const auto& field : spec_fields())
+    if (field.key.starts_with(key + ".")) return true;
+  return false;
+}
+
+void read_object(JobSpec& spec, const json& object, const std::string& prefix, const std::string& source) {
+  for (const auto& [name, value] : object.items()) {
+    const std::string key = prefix.empty() ? name : prefix + "." + name;
+    if (const SpecField* field = find_field(key))
+      set_field(spec, *field, value, source + key);
+    else if (value.is_object() && is_section(key))
+      read_object(spec, value, key, source);
+    else
+      throw Failure(ErrorWord::kBadConfig, source + key + " = " + value.dump() + " is not a known setting");
+  }
+}
+
+}  // namespace
+
+const std::vector<SpecField>& spec_fields() {
+  static const std::vector<SpecField> fields = make_fields();
+  return fields;
+}
+
+void set_field(JobSpec& spec, const SpecField& field, const json& value, const std::string& place) {
+  check_value(field.schema, value, place);
+  if (field.key == "view_space.kind") {
+    const std::string kind = value;
+    const bool known =
+        kind == "auto" || kind == "walk" || kind == "orbit" || kind == "boxes" || (kind.starts_with("path:") && kind.size() > 5);
+    if (!known) reject(place, value, "auto, walk, orbit, boxes or path:FILE");
+  }
+  field.set(spec, value);
+}
+
+void set_field_from_text(JobSpec& spec, const SpecField& field, const std::string& text) {
+  const std::string type = field.schema.at("type");
+  json value = text;
+  if (type != "string") {
+    const bool string_items = type == "array" && field.schema.at("items").at("type") == "string";
+    if (string_items) {
+      value = field.get(spec);
+      value.push_back(text);
+    } else {
+      value = json::parse(type == "array" ? "[" + text + "]" : text, nullptr, false);
+      if (value.is_discarded()) reject(field.flag, text, "a value of type " + type);
+    }
+  }
+  set_field(spec, field, value, field.flag);
+}
+
+void read_object_into(JobSpec& spec, const json& object, const std::string& source) {
+  read_object(spec, object, "", source);
+}
+
+json to_json(const JobSpec& spec, bool result_only) {
+  json object = json::object();
+  for (const auto& field : spec_fields())
+    if (field.in_result || !result_only) object[pointer_of(field.key)] = field.get(spec);
+  return object;
+}
+
+JobSpec spec_from_json(const json& object) {
+  JobSpec spec;
+  read_object(spec, object, "", "");
+  return spec;
+}
+
+json spec_schema() {
+  json schema = {{"$schema", "https://json-schema.org/draft/2020-12/schema"}, {"title", "Standin job"}, {"type", "object"}};
+  schema["additionalProperties"] = false;
+  const json defaults = to_json(JobSpec{}, false);
+  for (const auto& field : spec_fields()) {
+    json entry = field.schema;
+    entry["description"] = field.help;
+    entry["default"] = defaults.at(pointer_of(field.key));
+    const auto dot = field.key.find('.');
+    if (dot == std::string::npos) {
+      schema["properties"][field.key] = entry;
+    } else {
+      json& section = schema["properties"][field.key.substr(0, dot)];
+      section["type"] = "object";
+      section["additionalProperties"] = false;
+      section["properties"][field.key.substr(dot + 1)] = entry;
+    }
+  }
+  return schema;
+}
+
+}  // namespace standin

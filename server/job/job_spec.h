@@ -1,0 +1,93 @@
+// The one description of a job: what the command line, configuration files, the service and tests all fill in.
+//
+// Defaults live here and nowhere else. Every setting has one row in spec_fields(): its key in a configuration file, its flag, its help, its
+// range. The parser, --help,
+// --print-config, the JSON Schema and the README's table are made from these rows (or checked against them by a test).
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "render/base/geometry.h"
+
+namespace standin {
+
+struct JobSpec {
+  double budget_ms = 0.0;  // > 0 where a command needs one
+
+  std::string up = "auto";
+  std::string unit = "auto";  // m, cm, mm, in or a factor
+  std::uint64_t split_triangles = 100'000;
+  double split_extent = 0.125;
+  std::vector<std::string> texture_folders;
+
+  double fov_y_deg = 45.0;
+  int width = 512;
+  int height = 512;
+
+  std::string view_space = "auto";  // auto, walk, orbit, path:FILE or boxes
+  double path_radius_m = 2.0;
+  std::vector<Box> boxes;  // for view_space = boxes; given in the configuration file
+  double leaf_m = 23.0;
+  int refine_levels = 2;
+  double interval_deg = 11.25;
+  double eye_height_m = 1.7;
+  std::uint64_t max_leaves = 20'000;
+
+  std::string visibility = "auto";  // auto: where a probe finds occlusion; on; off
+  std::uint64_t visibility_rays = 200'000;
+
+  std::vector<double> apex_deg = {11.25, 22.5, 45.0, 90.0};
+  double direction_step_deg = 11.25;
+  std::string cell_shape = "shaft";
+
+  double alpha_scale = 1.0;
+  double texel_scale = 1.0;
+  std::uint32_t max_layers = 0;  // 0: 200 for walk, 400 for orbit
+  int exchange_rounds = 0;
+  int bound_iterations = 100;
+  int bake_rounds = 4;
+  std::uint32_t size_bakes = 48;
+
+  std::string techniques = "layered";
+  std::string device = "osmesa";
+  std::uint64_t survey_views = 20'000;
+  std::uint32_t verify_views = 32;
+  std::uint64_t seed = 1;
+  std::vector<std::string> force;  // stages that run although they could be left out
+  int threads = 0;                 // 0: one per processor; never part of a result
+};
+
+struct SpecField {
+  std::string key;   // "view_space.leaf_m"
+  std::string flag;  // "--leaf-m"
+  std::string help;
+  nlohmann::json schema;  // JSON Schema of the value, with its range
+  bool in_result = true;  // false: cannot change a result, so placement.json does not carry it
+  std::function<void(JobSpec&, const nlohmann::json&)> set;
+  std::function<nlohmann::json(const JobSpec&)> get;
+};
+
+[[nodiscard]] const std::vector<SpecField>& spec_fields();
+
+/// Sets one field from a JSON value. Throws Failure(kBadConfig) naming `place` (a path into a file, or a flag), the value and the
+/// constraint.
+void set_field(JobSpec& spec, const SpecField& field, const nlohmann::json& value, const std::string& place);
+/// Sets one field from the text of a flag.
+void set_field_from_text(JobSpec& spec, const SpecField& field, const std::string& text);
+/// Reads the keys of a nested object; `source` prefixes messages. Unknown keys are errors with their path.
+void read_object_into(JobSpec& spec, const nlohmann::json& object, const std::string& source);
+/// Reads a TOML file into `spec`. Unknown keys are errors with their path.
+void read_config(JobSpec& spec, const std::filesystem::path& file);
+
+/// Nested object of all keys; `result_only` leaves out what cannot change a result.
+[[nodiscard]] nlohmann::json to_json(const JobSpec& spec, bool result_only);
+[[nodiscard]] JobSpec spec_from_json(const nlohmann::json& object);
+/// The job's JSON Schema (configs/job.schema.json is this text).
+[[nodiscard]] nlohmann::json spec_schema();
+
+}  // namespace standin

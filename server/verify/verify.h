@@ -1,0 +1,83 @@
+// Verification by rendering (architecture.md: verify): views of the placed view space, each drawn with and without impostors through
+// placement/runtime, estimated and measured.
+//
+// Random views and adversarial ones (cell corners, interval borders, the views whose bound the optimizer left closest to the budget, a
+// camera path through the view space). "Before" draws the visible originals, "after" what the placement says. Times are measured only where
+// the device is the target's; elsewhere they are left out.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "estimation/time_model.h"
+#include "placement/runtime/placement.h"
+#include "placement/view_space/view_space.h"
+#include "render/base/work.h"
+#include "render/device/frame_timer.h"
+
+namespace standin {
+
+enum class ViewOrigin { kRandom, kCorner, kBorder, kTight, kPath };
+
+struct VerifiedView {
+  View view;
+  ViewOrigin origin = ViewOrigin::kRandom;
+  std::optional<std::uint32_t> cell;
+  std::optional<std::uint32_t> cpv;
+  double estimated_before_ms = 0.0;
+  double estimated_after_ms = 0.0;
+  std::optional<double> measured_before_ms;
+  std::optional<double> measured_after_ms;
+  double mean_error = 0.0;  // image with against image without impostors
+};
+
+/// One view in pictures, for the report.
+struct ViewPictures {
+  std::uint32_t view = 0;  // index into VerifyResult::views
+  Texture original;
+  Texture with_impostors;
+  Texture difference;  // absolute, amplified 4x
+};
+
+struct VerifyOptions {
+  std::uint32_t views = 32;
+  double measured_before_share = 1.0;  // of the views whose slow "before" frame is rendered and timed (worst estimates first)
+  std::uint64_t seed = 1;
+  std::uint32_t pictures = 4;       // worst views by image error and by time
+  std::uint32_t judged_views = 64;  // views inside view cells that are judged by rays
+  int threads = 1;
+};
+
+struct VerifyResult {
+  std::vector<VerifiedView> views;
+  std::vector<ViewPictures> pictures;
+  std::uint32_t over_budget_estimated = 0;
+  std::uint32_t over_budget_measured = 0;
+  double worst_over_budget = 0.0;  // max of measured_after / budget
+  std::uint32_t judged_views = 0;  // views judged by rays, and what they found
+  std::uint64_t gap_pixels = 0;
+  double max_parallax_ratio = 0.0;
+  double mean_error = 0.0;            // mean over views with an impostor in them
+  std::vector<std::string> left_out;  // what was not measured, and why
+};
+
+/// What verification looks at: a placement and the bytes of the GLB that ships with it (impostors are read back from it).
+struct VerifyInput {
+  const Scene& scene;
+  const Target& target;
+  const Placement& placement;
+  const ViewSpace& view_space;
+  const Camera& camera;
+  const std::string& impostor_glb;
+  double budget_ms;
+  double alpha_rad;
+};
+
+/// `measure` false: nothing is timed (another machine's target, say); pictures are drawn all the same.
+[[nodiscard]] VerifyResult verify_placement(const VerifyInput& input, DeviceKind device, bool measure, const VerifyOptions& options,
+                                            const WorkBudget& budget);
+
+}  // namespace standin
