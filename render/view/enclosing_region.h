@@ -15,7 +15,9 @@ namespace standin {
 /// Depends on the directions and the camera only; one serves every box (and is shared by threads).
 struct DirectionCone {
   Vec3 axis{0.0};
-  double half_angle_rad = 0.0;      // >= pi/2: everything
+  double half_angle_rad = 0.0;  // >= pi/2: everything
+  double cos_half_angle = 1.0;
+  double sin_half_angle = 0.0;
   std::vector<Vec3> plane_normals;  // outward; region is { x : n.x <= support of the box along n }
 };
 

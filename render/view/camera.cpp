@@ -1,0 +1,73 @@
+#include "render/view/camera.h"
+
+#include <cmath>
+
+namespace standin {
+namespace {
+
+// Below this sine of the angle to the up vector a direction counts as a pole: there right = direction x up is rounding noise.
+constexpr double kPoleSine = 1e-12;
+
+Vec3 right_of(const Vec3& direction) {
+  const double sine = std::hypot(direction.x, direction.z);
+  if (sine <= kPoleSine) return {1.0, 0.0, 0.0};
+  return {-direction.z / sine, 0.0, direction.x / sine};  // direction x (0, 1, 0)
+}
+
+}  // namespace
+
+double Camera::tan_half_y() const {
+  return std::tan(0.5 * fov_y_rad);
+}
+
+double Camera::tan_half_x() const {
+  return tan_half_y() * width / height;
+}
+
+double Camera::half_diagonal_rad() const {
+  return std::atan(std::hypot(tan_half_x(), tan_half_y()));
+}
+
+double Camera::pixel_angle_rad() const {
+  return 2.0 * std::atan(tan_half_y() / height);
+}
+
+double Camera::focal_px() const {
+  return height / (2.0 * tan_half_y());
+}
+
+Mat3 world_from_eye_rotation(const Vec3& direction) {
+  const Vec3 right = right_of(direction);
+  return {right, glm::cross(right, direction), -direction};
+}
+
+Mat4 eye_from_world(const View& view) {
+  const Mat3 eye_from_world_rotation = glm::transpose(world_from_eye_rotation(view.direction));
+  Mat4 result(eye_from_world_rotation);
+  result[3] = Vec4(-(eye_from_world_rotation * view.position), 1.0);
+  return result;
+}
+
+Mat4 clip_from_eye(const Camera& camera) {
+  Mat4 result(0.0);
+  result[0][0] = 1.0 / camera.tan_half_x();
+  result[1][1] = 1.0 / camera.tan_half_y();
+  result[2][2] = -1.0;
+  result[2][3] = -1.0;
+  result[3][2] = -2.0 * camera.near_m;
+  return result;
+}
+
+std::array<Plane, 5> frustum_planes(const View& view, const Camera& camera) {
+  const Mat3 frame = world_from_eye_rotation(view.direction);
+  const auto through_eye = [&](const Vec3& outward) {
+    const Vec3 normal = glm::normalize(outward);
+    return Plane{normal, glm::dot(normal, view.position)};
+  };
+  const Vec3 x_border = camera.tan_half_x() * view.direction;
+  const Vec3 y_border = camera.tan_half_y() * view.direction;
+  return {through_eye(frame[0] - x_border), through_eye(-frame[0] - x_border), through_eye(frame[1] - y_border),
+          through_eye(-frame[1] - y_border), through_eye(-view.direction)};
+}
+
+}  // namespace standin

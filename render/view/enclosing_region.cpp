@@ -1,0 +1,153 @@
+#include "render/view/enclosing_region.h"
+
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+namespace standin {
+namespace {
+
+// Added to every opening angle: rounding of points and normals (1e-15) can then not push a seen point out.
+constexpr double kAngleSlackRad = 1e-9;
+// A half angle nearer than this to a right angle bounds nothing worth testing.
+constexpr double kFlatRad = 0.5 * std::numbers::pi - 1e-6;
+// Steps of the grid of sampled directions, per side of the interval.
+constexpr int kGridSteps = 32;
+// Closer to the poles than this cosine of the elevation, the roll-free camera turns too fast for sampled planes.
+constexpr double kLeastCosElevation = 0.05;
+constexpr int kPlaneDirections = 8;
+
+double angle_between(const Vec3& a, const Vec3& b) {
+  return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b));
+}
+
+Vec3 cell_direction(const FaceFrame& frame, double tan_a, double tan_b) {
+  return glm::normalize(frame.n + tan_a * frame.u + tan_b * frame.v);
+}
+
+// A: the smallest cap about the mean corner that holds the interval, widened by the half diagonal of the image. A cap below 90 degrees is
+// convex, so the corners suffice.
+DirectionCone any_roll_cone(const FaceFrame& frame, const std::array<double, 4>& tangents, double tan_half_x, double tan_half_y) {
+  const auto [a0, a1, b0, b1] = tangents;
+  const std::array<Vec3, 4> corners = {cell_direction(frame, a0, b0), cell_direction(frame, a1, b0), cell_direction(frame, a1, b1),
+                                       cell_direction(frame, a0, b1)};
+  DirectionCone cone;
+  cone.axis = glm::normalize(corners[0] + corners[1] + corners[2] + corners[3]);
+  for (const Vec3& corner : corners) cone.half_angle_rad = std::max(cone.half_angle_rad, angle_between(cone.axis, corner));
+  cone.half_angle_rad += std::atan(std::hypot(tan_half_x, tan_half_y)) + kAngleSlackRad;
+  return cone;
+}
+
+// Corner rays of the frusta of a grid of directions, and how far (as a rotation) any frustum of the interval is from one of them.
+struct SampledFrusta {
+  std::vector<Vec3> corner_rays;
+  double reach_rad = 0.0;
+};
+
+double grid_angle(double tan_low, double tan_high, int step) {
+  const double low = std::atan(tan_low);
+  return low + (std::atan(tan_high) - low) * step / kGridSteps;
+}
+
+// nullopt near the poles. Every direction is within half a grid step in each of the two angles of a sample; on a cube face (tangents in
+// [-1, 1]) a change of one angle turns the direction by no more than that, so by at most `turn`. Turning a direction changes the elevation
+// by no more, and the azimuth by no more than 1 / cos(elevation) times that; and two roll-free cameras differ by a rotation of at most the
+// sum of the changes in azimuth and elevation.
+std::optional<SampledFrusta> sample_frusta(const FaceFrame& frame, const std::array<double, 4>& tangents, double tan_half_x,
+                                           double tan_half_y, const Vec3& up) {
+  const auto [a0, a1, b0, b1] = tangents;
+  const double turn = 0.5 * (std::atan(a1) - std::atan(a0) + std::atan(b1) - std::atan(b0)) / kGridSteps;
+  SampledFrusta result;
+  double least_cos = 1.0;
+  for (int i = 0; i <= kGridSteps; ++i)
+    for (int j = 0; j <= kGridSteps; ++j) {
+      const Vec3 direction = cell_direction(frame, std::tan(grid_angle(a0, a1, i)), std::tan(grid_angle(b0, b1, j)));
+      const Vec3 across = glm::cross(direction, up);
+      const double cos_elevation = glm::length(across);
+      if (cos_elevation - turn < kLeastCosElevation) return std::nullopt;
+      least_cos = std::min(least_cos, cos_elevation - turn);
+      const Vec3 x = tan_half_x / cos_elevation * across;
+      const Vec3 y = tan_half_y / cos_elevation * glm::cross(across, direction);
+      for (const Vec3& ray : {direction + x + y, direction + x - y, direction - x + y, direction - x - y})
+        result.corner_rays.push_back(glm::normalize(ray));
+    }
+  result.reach_rad = turn * (1.0 + 1.0 / least_cos) + kAngleSlackRad;
+  return result;
+}
+
+// The least angle from `axis` towards `lateral` such that the plane through the apex at that angle has all frusta on one side. A ray within
+// `reach` of a sample differs from it in that angle by at most asin(sin(reach) / length of its projection). nullopt: none below 90 degrees.
+std::optional<double> plane_angle(const SampledFrusta& frusta, const Vec3& axis, const Vec3& lateral) {
+  const double sin_reach = std::sin(frusta.reach_rad);
+  double widest = -kFlatRad;
+  for (const Vec3& ray : frusta.corner_rays) {
+    const double along = glm::dot(ray, axis);
+    const double across = glm::dot(ray, lateral);
+    if (along <= sin_reach) return std::nullopt;
+    widest = std::max(widest, std::atan2(across, along) + std::asin(sin_reach / std::hypot(along, across)));
+  }
+  if (widest >= kFlatRad) return std::nullopt;
+  return widest;
+}
+
+// C: planes tilted from the axis towards eight lateral directions. Elsewhere than on the poles the camera's own right and up are among
+// them, where the rectangular image makes them tightest.
+std::vector<Vec3> roll_free_planes(const SampledFrusta& frusta, const Vec3& axis, const Vec3& up) {
+  const Vec3 right = glm::normalize(glm::cross(axis, up));
+  const Vec3 above = glm::cross(right, axis);
+  std::vector<Vec3> normals;
+  for (int k = 0; k < kPlaneDirections; ++k) {
+    const double turn = 2.0 * std::numbers::pi * k / kPlaneDirections;
+    const Vec3 lateral = std::cos(turn) * right + std::sin(turn) * above;
+    if (const auto angle = plane_angle(frusta, axis, lateral)) normals.push_back(std::cos(*angle) * lateral - std::sin(*angle) * axis);
+  }
+  return normals;
+}
+
+// Least dot(normal, x) over the box [low, high].
+double least_along(const Vec3& normal, const Vec3& low, const Vec3& high) {
+  return std::min(normal.x * low.x, normal.x * high.x) + std::min(normal.y * low.y, normal.y * high.y) +
+         std::min(normal.z * low.z, normal.z * high.z);
+}
+
+}  // namespace
+
+DirectionCone enclosing_cone(const FaceFrame& frame, const std::array<double, 4>& tangents, double tan_half_x, double tan_half_y,
+                             const Vec3& up) {
+  DirectionCone cone = any_roll_cone(frame, tangents, tan_half_x, tan_half_y);
+  if (const auto frusta = sample_frusta(frame, tangents, tan_half_x, tan_half_y, up))
+    cone.plane_normals = roll_free_planes(*frusta, cone.axis, up);
+  cone.cos_half_angle = std::cos(cone.half_angle_rad);
+  cone.sin_half_angle = std::sin(cone.half_angle_rad);
+  return cone;
+}
+
+DirectionCone enclosing_cone(const DirectionInterval& interval, const Camera& camera) {
+  std::array<double, 4> tangents = interval.angles_rad();
+  for (double& angle : tangents) angle = std::tan(angle);
+  return enclosing_cone(face_frame(interval.face), tangents, camera.tan_half_x(), camera.tan_half_y(), {0.0, 1.0, 0.0});
+}
+
+bool may_see(const DirectionCone& cone, const Box& positions, const Box& box) {
+  // All differences "point of the box minus position" form a box again: the question is whether it misses a cone whose apex is the origin.
+  const Vec3 low = box.min - positions.max;
+  const Vec3 high = box.max - positions.min;
+  const double slack = 1e-14 * (glm::length(low) + glm::length(high));
+  for (const Vec3& normal : cone.plane_normals)
+    if (least_along(normal, low, high) > slack) return false;
+  if (cone.half_angle_rad >= kFlatRad) return true;
+  if (least_along(-cone.axis, low, high) > slack) return false;
+  // The cone's tangent plane nearest to the box's centre; it rejects whatever the bounding sphere of the box would, and more.
+  const Vec3 centre = 0.5 * (low + high);
+  const Vec3 across = centre - glm::dot(centre, cone.axis) * cone.axis;
+  const double distance = glm::length(across);
+  if (distance <= slack) return true;
+  const Vec3 tangent_normal = cone.cos_half_angle / distance * across - cone.sin_half_angle * cone.axis;
+  return least_along(tangent_normal, low, high) <= slack;
+}
+
+bool contains(const DirectionCone& cone, const Box& positions, const Vec3& point) {
+  return may_see(cone, positions, Box{point, point});
+}
+
+}  // namespace standin
