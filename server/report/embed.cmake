@@ -1,0 +1,10 @@
+# Writes the text of FILES as C++ string constants into OUTPUT:   cmake -DOUTPUT=... -DNAMES=a,b -DFILES=path,path -P embed.cmake
+string(REPLACE "," ";" names "${NAMES}")
+string(REPLACE "," ";" files "${FILES}")
+set(text "#pragma once\n\n#include <string_view>\n\nnamespace standin::embedded {\n")
+foreach(name file IN ZIP_LISTS names files)
+  file(READ "${file}" content)
+  string(APPEND text "\ninline constexpr std::string_view ${name} = R\"embedded(${content})embedded\";\n")
+endforeach()
+string(APPEND text "\n}  // namespace standin::embedded\n")
+file(WRITE "${OUTPUT}" "${text}")
