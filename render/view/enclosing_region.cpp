@@ -104,6 +104,17 @@ std::vector<Vec3> roll_free_planes(const SampledFrusta& frusta, const Vec3& axis
   return normals;
 }
 
+// A long box can lie wholly behind the viewer and yet cut every tilted plane: where the cone keeps to one side of a plane parallel to the
+// faces of boxes, that plane is a border too.
+void add_face_planes(DirectionCone& cone) {
+  for (int axis = 0; axis < 3; ++axis)
+    for (const double sign : {1.0, -1.0}) {
+      Vec3 inward(0.0);
+      inward[axis] = sign;
+      if (angle_between(cone.axis, inward) + cone.half_angle_rad < kFlatRad) cone.plane_normals.push_back(-inward);
+    }
+}
+
 // Least dot(normal, x) over the box [low, high].
 double least_along(const Vec3& normal, const Vec3& low, const Vec3& high) {
   return std::min(normal.x * low.x, normal.x * high.x) + std::min(normal.y * low.y, normal.y * high.y) +
@@ -117,6 +128,7 @@ DirectionCone enclosing_cone(const FaceFrame& frame, const std::array<double, 4>
   DirectionCone cone = any_roll_cone(frame, tangents, tan_half_x, tan_half_y);
   if (const auto frusta = sample_frusta(frame, tangents, tan_half_x, tan_half_y, up))
     cone.plane_normals = roll_free_planes(*frusta, cone.axis, up);
+  add_face_planes(cone);
   cone.cos_half_angle = std::cos(cone.half_angle_rad);
   cone.sin_half_angle = std::sin(cone.half_angle_rad);
   return cone;
