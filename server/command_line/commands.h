@@ -1,0 +1,48 @@
+// The commands of `standin`: arguments in, exit code out. Results on stdout (text, or JSON with --json), progress on stderr.
+//
+// Exit codes: 0 done; 1 the aim could not be met (an unsolved view, a failed check); failures are thrown and mapped by main.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "render/base/work.h"
+#include "server/job/job_spec.h"
+
+namespace standin {
+
+/// What the words after a command said.
+struct CommandArguments {
+  std::vector<std::string> scenes;
+  std::string folder;  // DIR
+  std::string output;  // -o
+  std::string target;
+  std::string evaluate;   // calibrate --evaluate
+  double seconds = 45.0;  // calibrate
+  std::string objects;    // bake: "1,2,5-9"; empty: all
+  std::string view_cell;  // bake: shaft:... or box:...
+  std::uint32_t city_objects = 5287;
+  std::uint64_t city_triangles = 10'400'000;
+  bool json = false;
+  bool explain = false;
+};
+
+struct CommandContext {
+  CommandArguments arguments;
+  JobSpec spec;
+  WorkBudget budget;
+};
+
+int make_city_command(const CommandContext& context);
+int info_command(const CommandContext& context);
+int calibrate_command(const CommandContext& context);
+int survey_command(const CommandContext& context);
+int place_command(const CommandContext& context);
+int bake_command(const CommandContext& context);
+int check_command(const CommandContext& context);
+int verify_command(const CommandContext& context);
+int report_command(const CommandContext& context);
+
+}  // namespace standin

@@ -1,0 +1,183 @@
+#include "server/command_line/parser.h"
+
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <map>
+
+namespace standin {
+namespace {
+
+// Which spec sections a command takes: it offers no flag that cannot matter to it.
+const std::vector<std::string> kSceneSections = {"scene"};
+const std::vector<std::string> kPlanSections = {"budget_ms", "scene",  "camera", "view_space", "visibility", "candidates", "impostors",
+                                                "select",    "device", "survey", "verify",     "seed",       "force",      "threads"};
+const std::vector<std::string> kBakeSections = {"scene", "camera", "impostors", "threads"};
+const std::vector<std::string> kTimingSections = {"scene", "camera", "device", "seed", "threads"};
+
+bool in_sections(const std::string& key, const std::vector<std::string>& sections) {
+  return std::ranges::any_of(sections, [&](const auto& section) { return key == section || key.starts_with(section + "."); });
+}
+
+// One subcommand under construction: its flags write into `flags`, applied after a configuration file was read.
+struct Builder {
+  CLI::App& app;
+  ParsedCommand& parsed;
+  std::vector<std::pair<const SpecField*, std::string>>& flags;
+  std::string& config;
+  bool& print_config;
+
+  void spec_flags(const std::vector<std::string>& sections) {
+    for (const auto& field : spec_fields()) {
+      if (field.flag.empty() || !in_sections(field.key, sections)) continue;
+      const auto* row = &field;
+      const auto apply = [given = &flags, row](const CLI::results_t& texts) {
+        for (const auto& text : texts) given->emplace_back(row, text);
+        return true;
+      };
+      app.add_option(field.flag, apply, field.help + "  [" + field.key + ", default " + field.get(JobSpec{}).dump() + "]")
+          ->expected(1)
+          ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+    }
+    app.add_option("--config", config, "TOML file with settings; flags win over it");
+    app.add_flag("--print-config", print_config, "print the complete effective settings as JSON and exit");
+  }
+  void quiet() { app.add_flag("--quiet", parsed.quiet, "no progress on stderr"); }
+  void json() { app.add_flag("--json", arguments().json, "machine-readable output"); }
+  void scene(bool required) {
+    auto* option = app.add_option("SCENE", arguments().scenes, "scene file (glTF, GLB, OBJ, PLY, STL, AC3D ...)");
+    if (required) option->required();
+  }
+  void one_scene() {
+    scene(true);
+    app.get_option("SCENE")->expected(1);
+  }
+  void folder() { app.add_option("DIR", arguments().folder, "folder that `standin place` wrote")->required(); }
+  void output(const std::string& help, bool required = true) {
+    auto* option = app.add_option("-o,--output", arguments().output, help);
+    if (required) option->required();
+  }
+  void target() { app.add_option("--target", arguments().target, "target file of `standin calibrate`")->required(); }
+  void run(std::function<int(const CommandContext&)> command) {
+    app.callback([this_parsed = &parsed, command] { this_parsed->run = command; });
+  }
+  CommandArguments& arguments() { return parsed.context.arguments; }
+};
+
+struct Grammar {
+  CLI::App app{"Standin: impostors so that every view of a scene meets its frame-time budget", "standin"};
+  ParsedCommand parsed;
+  std::vector<std::pair<const SpecField*, std::string>> flags;
+  std::string config;
+  bool print_config = false;
+
+  Builder command(const std::string& name, const std::string& help) {
+    CLI::App* sub = app.add_subcommand(name, help);
+    Builder builder{*sub, parsed, flags, config, print_config};
+    builder.quiet();
+    return builder;
+  }
+};
+
+void add_input_commands(Grammar& grammar) {
+  auto city = grammar.command("make-city", "write a procedural test city");
+  city.app.add_option("--objects", city.arguments().city_objects, "objects, exactly (>= 16)");
+  city.app.add_option("--triangles", city.arguments().city_triangles, "drawn triangles, within 1 %");
+  city.spec_flags({"seed"});
+  city.output("GLB file");
+  city.run(make_city_command);
+
+  auto info = grammar.command("info", "what a scene holds; what was repaired and dropped, and why");
+  info.one_scene();
+  info.spec_flags(kSceneSections);
+  info.json();
+  info.run(info_command);
+
+  auto calibrate = grammar.command("calibrate", "fit the rendering-time model of this machine, or check one");
+  calibrate.scene(false);
+  calibrate.app.add_option("--seconds", calibrate.arguments().seconds, "seconds of timed renders")->check(CLI::Range(1.0, 3600.0));
+  calibrate.app.add_option("--evaluate", calibrate.arguments().evaluate, "target file to check on the scenes");
+  calibrate.app.add_flag("--explain", calibrate.arguments().explain, "say what each term costs, in words");
+  calibrate.spec_flags(kTimingSections);
+  calibrate.output("target file", false);
+  calibrate.json();
+  calibrate.run(calibrate_command);
+}
+
+void add_planning_commands(Grammar& grammar) {
+  auto survey = grammar.command("survey", "where a scene is slow, and why, and how low the budget may go");
+  survey.one_scene();
+  survey.target();
+  survey.spec_flags(kPlanSections);
+  survey.output("result folder", false);
+  survey.json();
+  survey.run(survey_command);
+
+  auto place = grammar.command("place", "place impostors so that every view meets the budget, at least memory");
+  place.one_scene();
+  place.target();
+  place.spec_flags(kPlanSections);
+  place.output("result folder");
+  place.json();
+  place.run(place_command);
+
+  auto bake = grammar.command("bake", "one impostor of a scene's objects for a given view cell");
+  bake.one_scene();
+  bake.app.add_option("--objects", bake.arguments().objects, "object ids, as 1,2,5-9; all without it");
+  bake.app
+      .add_option("--view-cell", bake.arguments().view_cell,
+                  "shaft:DX,DY,DZ,APEX_DEG,MIN_DISTANCE (direction to the viewer) or box:X0,Y0,Z0,X1,Y1,Z1")
+      ->required();
+  bake.app.add_option("--technique", bake.parsed.context.spec.techniques, "impostor technique")->check(CLI::IsMember({"layered"}));
+  bake.spec_flags(kBakeSections);
+  bake.output("result folder");
+  bake.json();
+  bake.run(bake_command);
+}
+
+void add_result_commands(Grammar& grammar) {
+  auto check = grammar.command("check", "re-score DIR/placement.json from scratch");
+  auto verify = grammar.command("verify", "render and measure a placement; writes DIR/verify.json");
+  for (auto* builder : {&check, &verify}) {
+    builder->folder();
+    builder->app.add_option("--scene", builder->arguments().scenes, "the scene file, where it is not where place found it")->expected(1);
+    builder->app.add_option("--target", builder->arguments().target, "the target file, where it is not where place found it");
+    builder->json();
+  }
+  check.spec_flags({"threads", "scene.texture_folders"});
+  verify.app.add_option("--views", grammar.parsed.context.spec.verify_views, "views to render")->check(CLI::Range(1, 100'000));
+  verify.spec_flags({"seed", "threads", "device", "scene.texture_folders"});
+  check.run(check_command);
+  verify.run(verify_command);
+
+  auto report = grammar.command("report", "write DIR/report.html again");
+  report.folder();
+  report.run(report_command);
+}
+
+}  // namespace
+
+ParsedCommand parse_command_line(int argc, char** argv) {
+  Grammar grammar;
+  grammar.app.require_subcommand(1);
+  grammar.app.set_version_flag("--version", "standin " STANDIN_VERSION);
+  add_input_commands(grammar);
+  add_planning_commands(grammar);
+  add_result_commands(grammar);
+  try {
+    grammar.app.parse(argc, argv);
+  } catch (const CLI::Success& done) {  // --help, --version
+    grammar.app.exit(done);
+    return {};
+  } catch (const CLI::ParseError& error) {
+    throw Failure(ErrorWord::kBadUsage, error.what());
+  }
+  if (!grammar.config.empty()) read_config(grammar.parsed.context.spec, grammar.config);
+  for (const auto& [field, text] : grammar.flags) set_field_from_text(grammar.parsed.context.spec, *field, text);
+  if (grammar.print_config) {
+    std::cout << to_json(grammar.parsed.context.spec, false).dump(2) << "\n";
+    return {};
+  }
+  return std::move(grammar.parsed);
+}
+
+}  // namespace standin

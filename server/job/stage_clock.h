@@ -1,0 +1,55 @@
+// Seconds of each stage and what was left out: the bookkeeping behind metrics.json.
+#pragma once
+
+#include <chrono>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "render/base/work.h"
+
+namespace standin {
+
+class StageClock {
+ public:
+  explicit StageClock(const WorkBudget& budget) : budget_(budget) {}
+
+  /// Runs `stage`, adds its wall seconds to `name` and returns its result.
+  template <class Stage>
+  decltype(auto) run(const std::string& name, Stage&& stage) {
+    budget_.check();
+    budget_.report(name, 0.0);
+    const Timer timer(*this, name);
+    return std::forward<Stage>(stage)();
+  }
+
+  void leave_out(std::string what, std::string why) { left_out_.push_back({{"what", std::move(what)}, {"why", std::move(why)}}); }
+  [[nodiscard]] const nlohmann::json& seconds() const { return seconds_; }
+  [[nodiscard]] const nlohmann::json& left_out() const { return left_out_; }
+
+ private:
+  class Timer {
+   public:
+    Timer(StageClock& clock, const std::string& name) : clock_(clock), name_(name) {}
+    ~Timer() {
+      const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start_;
+      clock_.seconds_[name_] = clock_.seconds_.value(name_, 0.0) + elapsed.count();
+      clock_.budget_.report(name_, 1.0);
+    }
+    Timer(const Timer&) = delete;
+    Timer& operator=(const Timer&) = delete;
+
+   private:
+    StageClock& clock_;
+    std::string name_;
+    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  };
+
+  const WorkBudget& budget_;
+  nlohmann::json seconds_ = nlohmann::json::object();
+  nlohmann::json left_out_ = nlohmann::json::array();
+};
+
+}  // namespace standin

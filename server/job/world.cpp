@@ -1,0 +1,169 @@
+#include "server/job/world.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <fstream>
+#include <glm/trigonometric.hpp>
+#include <thread>
+
+#include "render/base/error.h"
+#include "render/visibility/visible_set.h"
+
+namespace standin {
+namespace {
+
+// Below this share of hidden triangles, visible sets cannot pay for themselves.
+constexpr double kOcclusionWorthwhile = 0.2;
+
+UpAxis up_axis(const std::string& name) {
+  if (name == "x") return UpAxis::kX;
+  if (name == "y") return UpAxis::kY;
+  if (name == "z") return UpAxis::kZ;
+  return UpAxis::kAuto;
+}
+
+double metres_per_unit(const std::string& unit) {
+  if (unit == "auto") return 0.0;
+  if (unit == "m") return 1.0;
+  if (unit == "cm") return 0.01;
+  if (unit == "mm") return 0.001;
+  if (unit == "in") return 0.0254;
+  char* end = nullptr;
+  const double factor = std::strtod(unit.c_str(), &end);
+  if (end == unit.c_str() || *end != '\0' || !(factor > 0.0) || !(factor < 1e12))
+    throw Failure(ErrorWord::kBadUsage, "--unit " + unit + " violates: auto, m, cm, mm, in or a factor > 0");
+  return factor;
+}
+
+std::vector<Vec3> read_path(const std::filesystem::path& file) {
+  std::ifstream stream(file);
+  if (!stream) throw Failure(ErrorWord::kFileMissing, "path file " + file.string() + " cannot be read");
+  std::vector<Vec3> positions;
+  std::string line;
+  for (int number = 1; std::getline(stream, line); ++number) {
+    Vec3 p{0.0};
+    char extra = 0;
+    const int fields = std::sscanf(line.c_str(), " %lf , %lf , %lf %c", &p.x, &p.y, &p.z, &extra);
+    const bool finite = std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
+    if (fields == 3 && finite)
+      positions.push_back(p);
+    else if (fields > 0 || (number > 1 && line.find_first_not_of(" \t\r") != std::string::npos))
+      throw Failure(ErrorWord::kFileBroken, file.string() + ":" + std::to_string(number) + ": \"" + line + "\" is not x,y,z in metres");
+  }
+  if (positions.empty()) throw Failure(ErrorWord::kViewSpaceEmpty, "path file " + file.string() + " holds no position");
+  return positions;
+}
+
+ViewSpace make_view_space(const JobSpec& spec, const Scene& scene, const Raytracer& raytracer, const ViewSpaceOptions& options) {
+  if (spec.view_space == "boxes") {
+    if (spec.boxes.empty()) throw Failure(ErrorWord::kViewSpaceEmpty, "view_space.kind = boxes, but view_space.boxes is empty");
+    return make_box_view_space(spec.boxes, options);
+  }
+  if (spec.view_space.starts_with("path:")) return make_path_view_space(read_path(spec.view_space.substr(5)), spec.path_radius_m, options);
+  std::string why = "asked for";
+  ViewSpaceKind kind = spec.view_space == "walk" ? ViewSpaceKind::kWalk : ViewSpaceKind::kOrbit;
+  if (spec.view_space == "auto") kind = default_view_space(scene, why);
+  ViewSpace space = kind == ViewSpaceKind::kWalk ? make_walk_view_space(scene, raytracer, options) : make_orbit_view_space(scene, options);
+  space.why = why;
+  return space;
+}
+
+std::vector<Box> boxes_of(const ViewSpace& space, const std::vector<CellKey>& keys) {
+  std::vector<Box> boxes;
+  boxes.reserve(keys.size());
+  for (const auto& key : keys) boxes.push_back(space.cell_box(key));
+  return boxes;
+}
+
+bool forced(const JobSpec& spec, const std::string& stage) {
+  return std::ranges::find(spec.force, stage) != spec.force.end();
+}
+
+// Whether to compute visible sets; says why not.
+bool wants_visibility(const JobSpec& spec, World& world, const std::vector<Box>& regions, StageClock& clock) {
+  if (spec.visibility == "off") {
+    clock.leave_out("visibility", "switched off");
+    return false;
+  }
+  world.occlusion = probe_occlusion(world.scene, *world.raytracer, regions, spec.seed);
+  if (spec.visibility == "on" || forced(spec, "visibility") || world.occlusion >= kOcclusionWorthwhile) return true;
+  clock.leave_out("visibility", "a probe found " + std::to_string(static_cast<int>(100.0 * world.occlusion)) +
+                                    " % of the triangles hidden: no occlusion to gain");
+  return false;
+}
+
+void add_visibility(const JobSpec& spec, World& world, StageClock& clock, const WorkBudget& budget) {
+  const std::vector<CellKey> keys = leaf_keys(world.view_space);
+  const std::vector<Box> regions = boxes_of(world.view_space, keys);
+  if (!wants_visibility(spec, world, regions, clock)) return;
+  const VisibilityOptions options{spec.visibility_rays, spec.seed};
+  auto sets = sample_visible_sets(world.scene, *world.raytracer, regions, options, world.threads, budget);
+  world.visibility.cells = keys;
+  for (auto& set : sets) {
+    world.missed_ray_share += set.missed_ray_share / static_cast<double>(sets.size());
+    world.visibility.sets.push_back(std::move(set.objects));
+  }
+}
+
+}  // namespace
+
+LoadOptions load_options(const JobSpec& spec) {
+  LoadOptions options;
+  options.placing = {up_axis(spec.up), metres_per_unit(spec.unit)};
+  options.split_triangles = spec.split_triangles;
+  options.split_extent = spec.split_extent;
+  options.texture_folders.assign(spec.texture_folders.begin(), spec.texture_folders.end());
+  return options;
+}
+
+Camera camera_of(const JobSpec& spec) {
+  Camera camera;
+  camera.fov_y_rad = glm::radians(spec.fov_y_deg);
+  camera.width = spec.width;
+  camera.height = spec.height;
+  return camera;
+}
+
+ViewSpaceOptions view_space_options(const JobSpec& spec) {
+  ViewSpaceOptions options;
+  options.leaf_m = spec.leaf_m;
+  options.refine_levels = spec.refine_levels;
+  options.interval_deg = spec.interval_deg;
+  options.eye_height_m = spec.eye_height_m;
+  options.max_leaves = spec.max_leaves;
+  return options;
+}
+
+BakeQuality quality_of(const JobSpec& spec, ViewSpaceKind view_space) {
+  BakeQuality quality;
+  quality.alpha_scale = spec.alpha_scale;
+  quality.texel_scale = spec.texel_scale;
+  const std::uint32_t by_view_space = view_space == ViewSpaceKind::kOrbit ? 400 : 200;
+  quality.max_layers = spec.max_layers > 0 ? spec.max_layers : by_view_space;
+  return quality;
+}
+
+int thread_count(const JobSpec& spec) {
+  return spec.threads > 0 ? spec.threads : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+}
+
+World build_world(const std::filesystem::path& scene_file, const JobSpec& spec, StageClock& clock, const WorkBudget& budget) {
+  World world;
+  world.threads = thread_count(spec);
+  world.camera = camera_of(spec);
+  world.view_space_options = view_space_options(spec);
+  clock.run("load", [&] {
+    world.scene = load_scene(scene_file, load_options(spec));
+    world.hierarchy = build_hierarchy(world.scene);
+  });
+  clock.run("view_space", [&] {
+    world.raytracer = std::make_unique<Raytracer>(world.scene, Raytracer::Options{true, world.threads});
+    world.view_space = make_view_space(spec, world.scene, *world.raytracer, world.view_space_options);
+  });
+  for (const auto& sentence : world.view_space.left_out) clock.leave_out("view_space", sentence);
+  clock.run("visibility", [&] { add_visibility(spec, world, clock, budget); });
+  world.quality = quality_of(spec, world.view_space.kind);
+  return world;
+}
+
+}  // namespace standin

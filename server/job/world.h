@@ -1,0 +1,42 @@
+// What a job looks at: the scene, its hierarchy, the camera, the view space and what is visible from it.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+
+#include "placement/view_space/subdivision.h"
+#include "placement/view_space/view_space.h"
+#include "render/impostor/bake.h"
+#include "render/scene/hierarchy.h"
+#include "render/scene/load.h"
+#include "render/visibility/raytracer.h"
+#include "server/job/job_spec.h"
+#include "server/job/stage_clock.h"
+
+namespace standin {
+
+[[nodiscard]] LoadOptions load_options(const JobSpec& spec);
+[[nodiscard]] Camera camera_of(const JobSpec& spec);
+[[nodiscard]] ViewSpaceOptions view_space_options(const JobSpec& spec);
+/// `view_space` decides the default cap on layers.
+[[nodiscard]] BakeQuality quality_of(const JobSpec& spec, ViewSpaceKind view_space);
+[[nodiscard]] int thread_count(const JobSpec& spec);
+
+struct World {
+  Scene scene;
+  Hierarchy hierarchy;
+  Camera camera;
+  ViewSpaceOptions view_space_options;
+  std::unique_ptr<Raytracer> raytracer;
+  ViewSpace view_space;
+  Visibility visibility;          // empty: left out
+  double occlusion = 0.0;         // what the probe found, 0..1
+  double missed_ray_share = 0.0;  // mean over the cells
+  BakeQuality quality;
+  int threads = 1;
+};
+
+/// Stages load, view_space and visibility.
+[[nodiscard]] World build_world(const std::filesystem::path& scene_file, const JobSpec& spec, StageClock& clock, const WorkBudget& budget);
+
+}  // namespace standin
