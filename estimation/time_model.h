@@ -2,9 +2,8 @@
 // upper bound of stated coverage.
 //
 // predicted = sum over non-pixel terms + min(sum over pixel terms, pixel_cap_ms): opaque objects are drawn front to back, so a frame's
-// pixel work saturates (a region's bound must choose one of the two linear forms beforehand: Cost keeps them apart). bound =
-// bound_factor(predicted) * predicted, conformal (split by scene), made monotone and inverted once: placement sees a single predicted-time
-// budget.
+// pixel work saturates (a region's bound must choose one of the two linear forms beforehand: Cost keeps them apart). The bound is a factor
+// times the prediction, conformal (split by scene) and made monotone; inverted once, it leaves placement a single predicted-time budget.
 #pragma once
 
 #include <array>
@@ -28,7 +27,8 @@ struct Cost {
   }
 };
 
-/// bound = factor * predicted for predicted < until_ms (the last entry: infinity). The product is non-decreasing.
+/// Predictions below `until_ms` (ascending; the last one infinity) and not below the step before are multiplied by `factor` >= 0. Where a
+/// later factor is less, the bound stays level until the product has caught up: bound = max over steps begun of factor * min(p, until_ms).
 struct BoundStep {
   double until_ms = 0.0;
   double factor = 1.0;
@@ -42,6 +42,7 @@ struct TimeModel {
 
   [[nodiscard]] Cost cost(const Features& features) const;
   [[nodiscard]] double predicted_ms(const Cost& frame) const;  // fixed + min(pixel, cap)
+  /// Non-decreasing; 0 at 0.
   [[nodiscard]] double bound_ms(double predicted_ms) const;
   /// Largest predicted time whose bound is within the budget; < 0 if none.
   [[nodiscard]] double predicted_budget_ms(double budget_ms) const;

@@ -1,0 +1,47 @@
+// A perspective image of small surface patches: how many pixels they generate.
+//
+// A patch of vector area a at eye-space point p, depth z, covers f^2 |a.p| / z^3 pixels: the exact differential of the projection, which
+// takes in distance, orientation and the growth towards the image's corners at once.
+#pragma once
+
+#include <cmath>
+
+#include "render/view/camera.h"
+
+namespace standin {
+
+/// A view with what every object asks of it.
+struct PreparedView {
+  PreparedView(const View& view, const Camera& camera)
+      : position(view.position),
+        eye_from_world(glm::transpose(world_from_eye_rotation(view.direction))),
+        planes(frustum_planes(view, camera)) {}
+  Vec3 position;
+  Mat3 eye_from_world;
+  std::array<Plane, 5> planes;
+};
+
+struct Projection {
+  explicit Projection(const Camera& camera)
+      : focal_px(camera.focal_px()), tan_half_x(camera.tan_half_x()), tan_half_y(camera.tan_half_y()), near_m(camera.near_m) {}
+
+  double focal_px, tan_half_x, tan_half_y, near_m;
+
+  [[nodiscard]] bool sees(const Vec3& eye_point) const {
+    const double depth = -eye_point.z;
+    return depth >= near_m && std::abs(eye_point.x) <= tan_half_x * depth && std::abs(eye_point.y) <= tan_half_y * depth;
+  }
+  /// Of a patch it sees; a share of the patch's area in the denominator (as in the form factor of a disc) keeps near patches finite.
+  [[nodiscard]] double pixels(const Vec3& eye_point, const Vec3& vector_area_m2) const {
+    const double depth = -eye_point.z;
+    const double softening_m2 = glm::length(vector_area_m2) / 3.14159265358979323846;
+    return focal_px * focal_px * std::abs(glm::dot(vector_area_m2, eye_point)) / (depth * (depth * depth + softening_m2));
+  }
+};
+
+/// The most pixels that a patch of 1 m^2 at 1 m covers anywhere in the image, facing the eye: f^2 / cos^3 of the half diagonal.
+[[nodiscard]] inline double greatest_pixels_per_m2_at_1m(const Camera& camera) {
+  return camera.focal_px() * camera.focal_px() * std::pow(std::cos(camera.half_diagonal_rad()), -3.0);
+}
+
+}  // namespace standin

@@ -1,0 +1,197 @@
+// Target files: "format": "standin.target". What is read has been checked: no number that is negative, not finite or missing gets past
+// here.
+#include <openssl/evp.h>
+
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <system_error>
+
+#include "estimation/time_model.h"
+#include "render/base/error.h"
+
+namespace standin {
+namespace {
+
+using Json = nlohmann::json;
+constexpr const char* kFormat = "standin.target";
+constexpr int kVersion = 1;
+
+std::string sha256_of(const std::string& bytes) {
+  std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
+  unsigned int length = 0;
+  if (EVP_Digest(bytes.data(), bytes.size(), digest.data(), &length, EVP_sha256(), nullptr) != 1)
+    throw Failure(ErrorWord::kInternal, "SHA-256 is not available");
+  std::string hex;
+  for (unsigned int i = 0; i < length; ++i)
+    for (const int nibble : {digest[i] >> 4, digest[i] & 15}) hex += "0123456789abcdef"[nibble];
+  return hex;
+}
+
+std::string bytes_of(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream || std::filesystem::is_directory(file))
+    throw Failure(ErrorWord::kFileMissing, "target file " + file.string() + " cannot be read");
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+/// Reads members of a JSON object, naming file and place in every complaint.
+class Reader {
+ public:
+  Reader(const Json& json, std::string place) : json_(json), place_(std::move(place)) {
+    if (!json.is_object()) fail("is not an object");
+  }
+
+  [[nodiscard]] const Json& member(const std::string& key) const {
+    const auto found = json_.find(key);
+    if (found == json_.end()) fail("has no \"" + key + "\"");
+    return *found;
+  }
+  [[nodiscard]] Reader object(const std::string& key) const { return {member(key), place_ + "/" + key}; }
+  [[nodiscard]] std::string text(const std::string& key) const {
+    if (!member(key).is_string()) fail("\"" + key + "\" is not a string");
+    return member(key).get<std::string>();
+  }
+  [[nodiscard]] std::vector<std::string> texts(const std::string& key) const {
+    std::vector<std::string> result;
+    for (const Json& entry : array(key)) {
+      if (!entry.is_string()) fail("\"" + key + "\" holds something else than strings");
+      result.push_back(entry.get<std::string>());
+    }
+    return result;
+  }
+  [[nodiscard]] double number(const std::string& key) const {
+    const Json& value = member(key);
+    const double number = value.is_number() ? value.get<double>() : -1.0;
+    if (!(number >= 0.0) || std::isinf(number)) fail("\"" + key + "\" is " + value.dump() + ", not a finite number >= 0");
+    return number;
+  }
+  /// A number, or null for infinity.
+  [[nodiscard]] double number_or_infinity(const std::string& key) const {
+    return member(key).is_null() ? std::numeric_limits<double>::infinity() : number(key);
+  }
+  [[nodiscard]] const Json& array(const std::string& key) const {
+    if (!member(key).is_array()) fail("\"" + key + "\" is not a list");
+    return member(key);
+  }
+  [[nodiscard]] const std::string& place() const { return place_; }
+  [[noreturn]] void fail(const std::string& what) const { throw Failure(ErrorWord::kFileBroken, "target file " + place_ + ": " + what); }
+
+ private:
+  const Json& json_;
+  std::string place_;
+};
+
+Json null_if_infinite(double number) {
+  return std::isinf(number) ? Json(nullptr) : Json(number);
+}
+
+std::vector<BoundStep> read_bound_steps(const Reader& model) {
+  std::vector<BoundStep> steps;
+  for (const Json& entry : model.array("bound_steps")) {
+    const Reader step(entry, model.place() + "/bound_steps/" + std::to_string(steps.size()));
+    steps.push_back({step.number_or_infinity("until_ms"), step.number("factor")});
+    if (steps.size() > 1 && !(steps[steps.size() - 2].until_ms < steps.back().until_ms)) step.fail("\"until_ms\" does not ascend");
+  }
+  if (steps.empty() || !std::isinf(steps.back().until_ms)) model.fail("\"bound_steps\" do not end in infinity (null)");
+  return steps;
+}
+
+TimeModel read_model(const Reader& json) {
+  TimeModel model;
+  const Reader terms = json.object("milliseconds_per_unit");
+  for (std::size_t i = 0; i < kTermCount; ++i) model.milliseconds_per_unit[i] = terms.number(std::string(term_name(static_cast<Term>(i))));
+  model.pixel_cap_ms = json.number_or_infinity("pixel_cap_ms");
+  model.bound_steps = read_bound_steps(json);
+  model.coverage = json.number("coverage");
+  if (!(model.coverage > 0.0 && model.coverage < 1.0)) json.fail("\"coverage\" is not between 0 and 1");
+  return model;
+}
+
+Json model_json(const TimeModel& model) {
+  Json terms = Json::object();
+  for (std::size_t i = 0; i < kTermCount; ++i) terms[std::string(term_name(static_cast<Term>(i)))] = model.milliseconds_per_unit[i];
+  Json steps = Json::array();
+  for (const BoundStep& step : model.bound_steps) steps.push_back({{"until_ms", null_if_infinite(step.until_ms)}, {"factor", step.factor}});
+  return {{"milliseconds_per_unit", terms},
+          {"pixel_cap_ms", null_if_infinite(model.pixel_cap_ms)},
+          {"bound_steps", steps},
+          {"coverage", model.coverage}};
+}
+
+void check_format(const Json& json, const std::filesystem::path& file) {
+  const Json format = json.is_object() ? json.value("format", Json()) : Json();
+  const Json version = json.is_object() ? json.value("version", Json()) : Json();
+  if (format == kFormat && version == kVersion) return;
+  throw Failure(ErrorWord::kTargetUnreadable, "target file " + file.string() + " is of format " + format.dump() + ", version " +
+                                                  version.dump() + "; this program reads \"" + kFormat + "\", version " +
+                                                  std::to_string(kVersion));
+}
+
+Json parse(const std::string& bytes, const std::filesystem::path& file) {
+  try {
+    return Json::parse(bytes);
+  } catch (const Json::exception& error) {
+    throw Failure(ErrorWord::kFileBroken, "target file " + file.string() + " is not JSON: " + error.what());
+  }
+}
+
+}  // namespace
+
+Target read_target(const std::filesystem::path& file) {
+  const std::string bytes = bytes_of(file);
+  const Json json = parse(bytes, file);
+  check_format(json, file);
+  const Reader root(json, file.string());
+  Target target;
+  target.sha256 = sha256_of(bytes);
+  target.id = root.text("id");
+  target.model = read_model(root.object("model"));
+  const Reader machine = root.object("machine");
+  target.device = machine.text("device");
+  target.renderer = machine.text("renderer");
+  target.gl_version = machine.text("gl_version");
+  target.processor = machine.text("processor");
+  target.reference_ms = machine.number("reference_ms");
+  const Reader quality = root.object("quality");
+  target.samples = static_cast<std::uint32_t>(std::min(quality.number("samples"), 4294967295.0));
+  target.median_error = quality.number("median_error");
+  target.p90_error = quality.number("p90_error");
+  target.measured_coverage = quality.number("measured_coverage");
+  target.left_out = quality.texts("left_out");
+  return target;
+}
+
+void write_target(const Target& target, const std::filesystem::path& file) {
+  const Json json = {{"format", kFormat},
+                     {"version", kVersion},
+                     {"id", target.id},
+                     {"machine",
+                      {{"device", target.device},
+                       {"renderer", target.renderer},
+                       {"gl_version", target.gl_version},
+                       {"processor", target.processor},
+                       {"reference_ms", target.reference_ms}}},
+                     {"model", model_json(target.model)},
+                     {"quality",
+                      {{"samples", target.samples},
+                       {"median_error", target.median_error},
+                       {"p90_error", target.p90_error},
+                       {"measured_coverage", target.measured_coverage},
+                       {"left_out", target.left_out}}}};
+  const std::filesystem::path beside = file.string() + ".part";
+  std::ofstream stream(beside, std::ios::binary | std::ios::trunc);
+  stream << json.dump(2) << '\n';
+  stream.close();
+  std::error_code error;
+  if (stream) std::filesystem::rename(beside, file, error);
+  if (!stream || error) {
+    std::error_code ignored;
+    std::filesystem::remove(beside, ignored);
+    throw Failure(ErrorWord::kInternal, "target file " + file.string() + " cannot be written");
+  }
+}
+
+}  // namespace standin
