@@ -1,8 +1,10 @@
 // The enclosing frustum of a view space region (thesis 5.5.2; math.md 4): a convex region that contains the frustum of every view whose
 // position lies in a box and whose direction lies in an interval.
 //
-// It is the intersection of A, a cone around the box that holds under any roll, and C, up to eight planes for the roll-free camera. A box
-// that misses either is seen by no such view. Rejections are conservative, acceptances are not.
+// It is the intersection of A, a cone around the box of positions that holds under any roll, and C, up to eight planes for the roll-free
+// camera (none near the poles, where that camera turns too fast). A box that misses either is seen by no such view: rejections are
+// conservative, acceptances are not. The test subtracts the boxes, so that the cone's apex is the origin and needs no shift, and rejects by
+// support functions only: by the planes, by the half-spaces in front, and by the tangent plane of the cone nearest to the box.
 #pragma once
 
 #include <vector>
@@ -18,7 +20,7 @@ struct DirectionCone {
   double half_angle_rad = 0.0;  // >= pi/2: everything
   double cos_half_angle = 1.0;
   double sin_half_angle = 0.0;
-  std::vector<Vec3> plane_normals;  // outward; region is { x : n.x <= support of the box along n }
+  std::vector<Vec3> plane_normals;  // outward, of C and of the half-spaces in front; region is { x : n.x <= support of the box along n }
 };
 
 [[nodiscard]] DirectionCone enclosing_cone(const DirectionInterval& interval, const Camera& camera);

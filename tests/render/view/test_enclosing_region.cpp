@@ -88,13 +88,13 @@ TEST(EnclosingRegion, ContainsEveryFrustumPointAtThePoles) {
   });
 }
 
-// One plane is the horizon, behind which nothing is seen from straight up or down; the rest are those of the roll-free camera.
+// Two planes bound the front (the one across the axis and the horizon); the rest are those of the roll-free camera.
 TEST(EnclosingRegion, HasNoRollFreePlanesAtThePoles) {
   for (const Face face : {Face::kPosY, Face::kNegY}) {
-    EXPECT_EQ(enclosing_cone(DirectionInterval{face, 3, 4, 4}, Camera{}).plane_normals.size(), 1U);
-    EXPECT_GT(enclosing_cone(DirectionInterval{face, 3, 0, 0}, Camera{}).plane_normals.size(), 4U);
+    EXPECT_EQ(enclosing_cone(DirectionInterval{face, 3, 4, 4}, Camera{}).plane_normals.size(), 2U);
+    EXPECT_GT(enclosing_cone(DirectionInterval{face, 3, 0, 0}, Camera{}).plane_normals.size(), 5U);
   }
-  EXPECT_EQ(enclosing_cone(DirectionInterval{Face::kPosX, 3, 4, 4}, Camera{}).plane_normals.size(), 9U);
+  EXPECT_EQ(enclosing_cone(DirectionInterval{Face::kPosX, 3, 4, 4}, Camera{}).plane_normals.size(), 10U);
 }
 
 TEST(EnclosingRegion, WideFieldsAreEverything) {
