@@ -1,17 +1,20 @@
 // How long a frame takes: the timing protocol.
 //
-// Thread CPU time between two glFinish, after warm-up draws; the least of `repeats`; a fixed reference frame is timed in between, and times
-// are scaled by reference_now / reference_at_calibration, since the host's speed steps by up to 1.4x within a minute. Samples whose wall
-// time exceeds 1.1x their CPU time are contaminated and repeated (at most twice as often as asked). Tests use FakeFrameTimer:
-// deterministic, a function of the counts.
+// Thread CPU time up to glFinish, after warm-up draws; the least of `repeats`. The host's speed steps by up to 1.4x within a minute, so a
+// fixed reference frame is timed in between, and
+//
+//   milliseconds = raw_milliseconds * reference_ms / (least reference time around this sample)
+//
+// where reference_ms is that of the calibration; a calibration itself uses the reference time of its own start. Repeats whose wall time
+// exceeds 1.1x their CPU time are contaminated (somebody else ran) and repeated, with at most twice as many draws as asked for. Tests use
+// the fake timer: deterministic, a function of the counts.
 #pragma once
 
 #include <functional>
 #include <memory>
-#include <string>
 
-#include "render/base/work.h"
 #include "render/device/renderer.h"
+#include "render/device/timing_lock.h"
 
 namespace standin {
 
@@ -26,31 +29,20 @@ class FrameTimer {
  public:
   virtual ~FrameTimer() = default;
   [[nodiscard]] virtual FrameSample time(Renderer& renderer, const View& view, const DrawList& list) = 0;
-  /// Milliseconds of the reference frame, median over this timer's life; what a target file stores.
+  /// Milliseconds of the reference frame that samples are normalised to; what a target file stores.
   [[nodiscard]] virtual double reference_ms() const = 0;
 };
 
 struct TimingProtocol {
-  int warm_up = 1;
-  int repeats = 9;            // minimum of
-  double reference_ms = 0.0;  // of the calibration; 0: do not normalise, this is the calibration
+  int warm_up = 1;            // the first draw of a new state compiles shader variants: 10-300 ms
+  int repeats = 9;            // minimum of, >= 1
+  double reference_ms = 0.0;  // of the calibration; 0: this is the calibration, normalise to the timer's own first reference
 };
 
-/// Owns a context of its own for the reference frame where needed. Wall-clock devices come later.
+/// Thread CPU time: for llvmpipe with LP_NUM_THREADS=0, which does all its work in the calling thread. The context must be current, stay
+/// current in this thread and outlive the timer. Throws Failure(kBadUsage) for a protocol out of range.
 [[nodiscard]] std::unique_ptr<FrameTimer> make_cpu_frame_timer(Context& context, const TimingProtocol& protocol);
-/// milliseconds = f(counts of the frame).
+/// milliseconds = f(counts of the frame); draws the frame once. reference_ms() is 1.
 [[nodiscard]] std::unique_ptr<FrameTimer> make_fake_frame_timer(std::function<double(const FrameCounts&)> milliseconds);
-
-/// Exclusive machine-wide lock (flock) that every timing stage holds; blocks, checking the budget.
-class TimingLock {
- public:
-  explicit TimingLock(const WorkBudget& budget);
-  ~TimingLock();
-  TimingLock(const TimingLock&) = delete;
-  TimingLock& operator=(const TimingLock&) = delete;
-
- private:
-  int descriptor_ = -1;
-};
 
 }  // namespace standin

@@ -1,0 +1,28 @@
+// The fixed frame that measures how fast the host is right now: its speed steps by up to 1.4x within a minute, and a picture that never
+// changes shows by how much.
+//
+// Built in, so that it is the same on every machine and in every version that reads the same target files: a textured relief and a field of
+// boxes, some thousand triangles and a full screen of trilinear pixels at 512 x 512, roughly the mix of a real frame.
+#pragma once
+
+#include "render/device/renderer.h"
+
+namespace standin {
+
+[[nodiscard]] Scene make_reference_scene();
+
+class ReferenceFrame {
+ public:
+  /// The context must be current, stay current in this thread and outlive it.
+  explicit ReferenceFrame(Context& context);
+  FrameCounts draw() { return renderer_.draw(view_, everything_); }
+  [[nodiscard]] Texture read_pixels() { return renderer_.read_pixels(); }
+
+ private:
+  Scene scene_;
+  Renderer renderer_;
+  View view_;
+  DrawList everything_;
+};
+
+}  // namespace standin

@@ -1,0 +1,24 @@
+// From repeated measurements of one frame to one sample, apart from clocks so that it can be tested with made-up times.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "render/device/frame_timer.h"
+
+namespace standin {
+
+/// One draw, timed by two clocks.
+struct Repeat {
+  double cpu_ms = 0.0;
+  double wall_ms = 0.0;
+  /// The thread was off the processor for part of the draw.
+  [[nodiscard]] bool contaminated() const { return wall_ms > 1.1 * cpu_ms; }
+};
+
+/// Whether to draw once more: until `wanted` clean repeats, with at most twice as many draws.
+[[nodiscard]] bool needs_another(std::span<const Repeat> repeats, int wanted);
+/// Of the clean repeats; of all where none is clean (CPU time is still close then). `repeats` must not be empty.
+[[nodiscard]] FrameSample summarise(std::span<const Repeat> repeats, double normalised_per_raw);
+
+}  // namespace standin
