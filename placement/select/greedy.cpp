@@ -1,0 +1,67 @@
+#include "placement/select/greedy.h"
+
+#include <algorithm>
+
+namespace standin {
+namespace {
+
+struct Scored {
+  double score = 0.0;
+  std::uint32_t candidate = 0;
+};
+
+/// Whether `b` is the better pick: greater score, then lower id (the order of a max-heap).
+bool worse(const Scored& a, const Scored& b) {
+  return a.score != b.score ? a.score < b.score : a.candidate > b.candidate;
+}
+
+}  // namespace
+
+GreedyPicks pick_lazily(GreedyState& state, const std::vector<bool>& taken, const WorkBudget& budget) {
+  GreedyPicks picks;
+  std::vector<Scored> heap;
+  const auto score = [&](std::uint32_t candidate) {
+    if (++picks.evaluations % 4096 == 0) budget.check();
+    return state.score(candidate);
+  };
+  for (std::uint32_t c = 0; c < taken.size(); ++c)
+    if (!taken[c])
+      if (const double fresh = score(c); fresh > 0.0) heap.push_back({fresh, c});
+  std::make_heap(heap.begin(), heap.end(), worse);
+
+  while (!state.all_met() && !heap.empty()) {
+    std::pop_heap(heap.begin(), heap.end(), worse);
+    const Scored top{score(heap.back().candidate), heap.back().candidate};
+    heap.pop_back();
+    if (top.score <= 0.0) continue;
+    if (heap.empty() || worse(heap.front(), top)) {
+      state.take(top.candidate);
+      picks.order.push_back(top.candidate);
+    } else {
+      heap.push_back(top);
+      std::push_heap(heap.begin(), heap.end(), worse);
+    }
+  }
+  return picks;
+}
+
+GreedyPicks pick_plainly(GreedyState& state, const std::vector<bool>& taken, const WorkBudget& budget) {
+  GreedyPicks picks;
+  std::vector<bool> left_alone = taken;
+  while (!state.all_met()) {
+    budget.check();
+    Scored best;
+    for (std::uint32_t c = 0; c < left_alone.size(); ++c) {
+      if (left_alone[c]) continue;
+      ++picks.evaluations;
+      if (const Scored fresh{state.score(c), c}; fresh.score > best.score) best = fresh;
+    }
+    if (best.score <= 0.0) break;
+    state.take(best.candidate);
+    picks.order.push_back(best.candidate);
+    left_alone[best.candidate] = true;
+  }
+  return picks;
+}
+
+}  // namespace standin

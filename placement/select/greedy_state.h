@@ -1,0 +1,64 @@
+// What the greedy knows while it picks: residual deficits, and what represents each cluster in each CPV.
+//
+// Score of a candidate (thesis Eq. 5.4-5.6, as Wolsey's truncated sum; math.md 5.3):
+//     score = (1 / bytes) sum over CPVs p, stages k of  min(max(net, 0), max(residual, 0)),   net = gain - gain of what it would replace
+// and a CPV takes part only if net >= 0 in *every* stage (the safe rule) and no ancestor's impostor is in use there. Then no score can
+// rise, which is what lets the lazy greedy trust stale scores. That must hold after rounding too, or lazy and plain would differ:
+//   - min(max(net, 0), max(residual, 0)) is monotone in both; the textbook form max(0, r) - max(0, r - net) is not;
+//   - residuals are only ever lowered by net >= 0;
+//   - what represents a cluster is the sum of all nets ever accepted inside it, in the order of the tree. Accepting one more inserts a term
+//     >= 0 into a left-to-right sum, which never falls, rounded or not. Summing the active gains afresh could fall by an ulp.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "placement/select/selection_problem.h"
+#include "placement/select/tree_order.h"
+
+namespace standin {
+
+class GreedyState {
+ public:
+  /// CPVs with `ignored[p]` (P flags, or empty) count as met.
+  GreedyState(const SelectionProblem& problem, const TreeOrder& order, const std::vector<bool>& ignored);
+
+  /// Puts an antichain to use at a CPV where nothing is in use yet, whatever its gains (what is baked already).
+  void represent(std::uint32_t cpv, std::span<const std::uint32_t> antichain);
+
+  [[nodiscard]] double score(std::uint32_t candidate) const;
+  /// Uses the candidate wherever its score comes from.
+  void take(std::uint32_t candidate);
+
+  [[nodiscard]] bool all_met() const { return unmet_ == 0; }
+
+ private:
+  struct InUse {
+    std::uint32_t rank = 0;  // of the candidate's node
+    std::uint32_t candidate = 0;
+  };
+  struct Cpv {
+    std::vector<InUse> in_use;            // an antichain, by rank
+    std::vector<std::uint32_t> net_rank;  // of every net ever accepted, ascending
+    std::vector<double> net;              // `stages` values for each of net_rank
+  };
+  struct Range {
+    std::size_t begin = 0, end = 0;
+  };
+
+  [[nodiscard]] bool met(std::uint32_t cpv) const;
+  [[nodiscard]] bool ancestor_in_use(const Cpv& state, std::uint32_t node) const;
+  [[nodiscard]] Range accepted_inside(const Cpv& state, std::uint32_t node) const;
+  [[nodiscard]] double net(const Cpv& state, Range inside, std::uint64_t entry, std::uint32_t stage) const;
+  [[nodiscard]] double term(std::uint32_t candidate, std::uint64_t entry) const;
+  void use(std::uint32_t candidate, std::uint64_t entry);
+
+  const SelectionProblem& problem_;
+  const TreeOrder& order_;
+  std::vector<double> residual_;  // P * K
+  std::vector<Cpv> cpvs_;
+  std::uint32_t unmet_ = 0;
+};
+
+}  // namespace standin

@@ -1,0 +1,130 @@
+// The order of the selection's steps; each has a file of its own.
+#include <algorithm>
+#include <utility>
+
+#include "placement/select/greedy.h"
+#include "placement/select/lagrangian_bound.h"
+#include "placement/select/reverse_delete.h"
+#include "placement/select/selection_problem.h"
+#include "placement/select/stall_repair.h"
+
+namespace standin {
+namespace {
+
+class Selector {
+ public:
+  Selector(const SelectionProblem& problem, const SelectionConfig& config, const WorkBudget& budget)
+      : problem_(problem), config_(config), budget_(budget), order_(problem.parent), columns_(problem, order_), cover_(problem, order_) {}
+
+  Selection run(std::span<const std::uint32_t> initial) {
+    for (const std::uint32_t candidate : initial) cover_.add(candidate);
+    set_aside();
+    pick();
+    repair();
+    result_.summary.bytes_greedy = bytes();
+    reverse_delete(problem_, cover_, budget_);
+    exchange(problem_, cover_, config_.exchange_rounds, budget_);
+    assign();
+    summarise();
+    return std::move(result_);
+  }
+
+ private:
+  /// CPVs that need nothing, and those that nothing can solve: no bytes are spent on either.
+  void set_aside() {
+    AntichainFinder finder(problem_, order_);
+    ignored_.assign(problem_.cpv_count(), false);
+    for (std::uint32_t p = 0; p < problem_.cpv_count(); ++p) {
+      budget_.check();
+      if (!needs_gain(p)) {
+        ignored_[p] = true;
+      } else if (const Antichain best = finder.best(columns_.of(p), p); !best.meets()) {
+        ignored_[p] = true;
+        result_.summary.unmet.push_back({p, best.violation});
+      }
+    }
+  }
+
+  void pick() {
+    std::vector<bool> taken(problem_.candidate_count());
+    for (std::uint32_t c = 0; c < taken.size(); ++c) taken[c] = cover_.contains(c);
+    GreedyState state(problem_, order_, ignored_);
+    for (std::uint32_t p = 0; p < problem_.cpv_count(); ++p)
+      if (!ignored_[p]) state.represent(p, cover_.best(p).candidates);
+
+    const GreedyPicks picks = config_.lazy ? pick_lazily(state, taken, budget_) : pick_plainly(state, taken, budget_);
+    for (const std::uint32_t candidate : picks.order) cover_.add(candidate);
+    result_.summary.picked_by_greedy = static_cast<std::uint32_t>(picks.order.size());
+    result_.summary.evaluations = picks.evaluations;
+  }
+
+  void repair() {
+    AntichainFinder finder(problem_, order_);
+    for (std::uint32_t p = 0; p < problem_.cpv_count(); ++p) {
+      if (ignored_[p]) continue;
+      budget_.check();
+      if (Antichain now = cover_.best(p); now.meets()) {
+        cover_.assign(p, std::move(now.candidates));
+      } else {
+        ++result_.summary.stalled;
+        repair_stall(problem_, cover_, p, finder.best(columns_.of(p), p), columns_.of(p));
+      }
+    }
+  }
+
+  /// Everything that is paid for is used where it helps most, also at CPVs that stay over budget.
+  void assign() {
+    result_.assigned.resize(problem_.cpv_count());
+    for (std::uint32_t p = 0; p < problem_.cpv_count(); ++p) {
+      if (!needs_gain(p)) continue;
+      Antichain best = cover_.best(p);
+      result_.assigned[p] = best.meets() || ignored_[p] ? std::move(best.candidates) : cover_.antichain(p);
+    }
+    result_.chosen = cover_.members();
+  }
+
+  void summarise() {
+    SelectionSummary& summary = result_.summary;
+    summary.bytes = bytes();
+    if (config_.bound_iterations > 0)
+      summary.lower_bound_bytes = lagrangian_bound(problem_, columns_, ignored_, summary.bytes, config_.bound_iterations, budget_);
+    summary.stop = summary.unmet.empty() ? SelectionSummary::Stop::kAllMet : SelectionSummary::Stop::kSomeUnreachable;
+    summary.message = summary.unmet.empty() ? "every region is within budget"
+                                            : std::to_string(summary.unmet.size()) + " of " + std::to_string(problem_.cpv_count()) +
+                                                  " regions stay over budget with any candidates";
+  }
+
+  [[nodiscard]] bool needs_gain(std::uint32_t cpv) const {
+    const auto first = problem_.deficit.begin() + static_cast<std::ptrdiff_t>(cpv) * problem_.stages;
+    return std::any_of(first, first + problem_.stages, [](double deficit) { return deficit > 0.0; });
+  }
+
+  [[nodiscard]] double bytes() const {
+    double sum = 0.0;
+    for (const std::uint32_t candidate : cover_.members()) sum += problem_.bytes[candidate];
+    return sum;
+  }
+
+  const SelectionProblem& problem_;
+  const SelectionConfig& config_;
+  const WorkBudget& budget_;
+  TreeOrder order_;
+  Columns columns_;
+  Cover cover_;
+  std::vector<bool> ignored_;
+  Selection result_;
+};
+
+}  // namespace
+
+Selection select_impostors(const SelectionProblem& problem, const SelectionConfig& config, std::span<const std::uint32_t> initial,
+                           const WorkBudget& budget) {
+  validate(problem);
+  for (const std::uint32_t candidate : initial)
+    if (candidate >= problem.candidate_count())
+      throw Failure(ErrorWord::kBadUsage, "initial candidate " + std::to_string(candidate) + " violates < " +
+                                              std::to_string(problem.candidate_count()) + " (the number of candidates)");
+  return Selector(problem, config, budget).run(initial);
+}
+
+}  // namespace standin

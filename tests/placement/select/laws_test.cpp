@@ -1,0 +1,164 @@
+// What any selector must keep, on hundreds of small random instances, against the brute force.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <functional>
+#include <numeric>
+
+#include "tests/support/selection_brute_force.h"
+#include "tests/support/selection_instances.h"
+
+namespace standin::test {
+namespace {
+
+using Selector = std::function<Selection(const SelectionProblem&)>;
+
+std::set<std::uint32_t> unreachable(const SelectionProblem& problem, const BruteForce& oracle) {
+  std::vector<std::uint32_t> all(problem.candidate_count());
+  std::iota(all.begin(), all.end(), 0U);
+  std::set<std::uint32_t> result;
+  for (std::uint32_t p = 0; p < problem.cpv_count(); ++p)
+    if (oracle.least_violation(all, p) > 0.0) result.insert(p);
+  return result;
+}
+
+void check_unmet(const SelectionProblem& problem, const BruteForce& oracle, const Selection& selection) {
+  std::vector<std::uint32_t> all(problem.candidate_count());
+  std::iota(all.begin(), all.end(), 0U);
+  std::set<std::uint32_t> unmet;
+  for (const auto& shortfall : selection.summary.unmet) {
+    unmet.insert(shortfall.cpv);
+    EXPECT_DOUBLE_EQ(shortfall.residual, oracle.least_violation(all, shortfall.cpv));
+  }
+  EXPECT_EQ(unmet, unreachable(problem, oracle));
+  EXPECT_EQ(selection.summary.stop == SelectionSummary::Stop::kAllMet, unmet.empty());
+}
+
+void check_assignments(const SelectionProblem& problem, const BruteForce& oracle, const Selection& selection) {
+  const auto blocked = unreachable(problem, oracle);
+  ASSERT_EQ(selection.assigned.size(), problem.cpv_count());
+  EXPECT_TRUE(std::is_sorted(selection.chosen.begin(), selection.chosen.end()));
+  for (std::uint32_t p = 0; p < problem.cpv_count(); ++p) {
+    const auto& antichain = selection.assigned[p];
+    EXPECT_TRUE(std::is_sorted(antichain.begin(), antichain.end()));
+    EXPECT_TRUE(oracle.is_antichain(antichain));
+    EXPECT_TRUE(std::includes(selection.chosen.begin(), selection.chosen.end(), antichain.begin(), antichain.end()));
+    for (const auto c : antichain) EXPECT_TRUE(oracle.serves(c, p));
+    if (blocked.count(p) == 0) {
+      EXPECT_EQ(oracle.violation(antichain, p), 0.0) << "CPV " << p;
+    }
+  }
+}
+
+/// No member can go: what reverse-delete promises.
+void check_minimal(const SelectionProblem& problem, const BruteForce& oracle, const Selection& selection) {
+  const auto blocked = unreachable(problem, oracle);
+  for (const auto left_out : selection.chosen) {
+    auto fewer = selection.chosen;
+    std::erase(fewer, left_out);
+    EXPECT_FALSE(oracle.meets_all(fewer, blocked)) << "candidate " << left_out << " is not needed";
+  }
+}
+
+void check_selector_laws(const SelectionProblem& problem, const Selector& select, double& worst_ratio) {
+  const BruteForce oracle(problem);
+  const auto selection = select(problem);
+  check_unmet(problem, oracle, selection);
+  check_assignments(problem, oracle, selection);
+  check_minimal(problem, oracle, selection);
+  const auto exact = oracle.optimum(unreachable(problem, oracle));
+  ASSERT_TRUE(exact.has_value());
+  const auto& summary = selection.summary;
+  EXPECT_LE(summary.lower_bound_bytes, exact->bytes);
+  EXPECT_LE(exact->bytes, summary.bytes * (1.0 + 1e-12));
+  EXPECT_LE(summary.bytes, summary.bytes_greedy);
+  if (exact->bytes > 0.0) worst_ratio = std::max(worst_ratio, summary.bytes / exact->bytes);
+}
+
+void check_many(const char* name, const RandomShape& shape, std::uint64_t seeds, const SelectionConfig& config) {
+  double worst_ratio = 1.0;
+  for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
+    SCOPED_TRACE(std::string(name) + ", seed " + std::to_string(seed));
+    check_selector_laws(
+        random_problem(seed, shape), [&](const auto& problem) { return select_impostors(problem, config, {}, {}); }, worst_ratio);
+    if (testing::Test::HasFailure()) return;
+  }
+  std::printf("%s: %lu instances, worst bytes / optimum %.3f\n", name, static_cast<unsigned long>(seeds), worst_ratio);
+}
+
+TEST(SelectorLaws, OneStage) {
+  check_many("one stage", {}, 250, {});
+}
+TEST(SelectorLaws, OneStageReal) {
+  check_many("one stage, real gains", {.integers = false}, 250, {});
+}
+TEST(SelectorLaws, ManyTies) {
+  check_many("ties", {.ties = true}, 250, {});
+}
+TEST(SelectorLaws, ThreeStages) {
+  check_many("three stages", {.stages = 3}, 150, {});
+}
+TEST(SelectorLaws, ThreeStagesSomeGainsNegative) {
+  check_many("three stages, negative gains", {.stages = 3, .negative = 0.4, .demand = 7.0}, 150, {});
+}
+TEST(SelectorLaws, PlainGreedy) {
+  check_many("plain", {}, 100, {.lazy = false});
+}
+TEST(SelectorLaws, Exchange) {
+  check_many("exchange", {}, 150, {.exchange_rounds = 10});
+}
+
+TEST(SelectorLaws, ExchangeNeverCosts) {
+  for (std::uint64_t seed = 1; seed <= 200; ++seed) {
+    const auto problem = random_problem(seed, {.candidates = 14, .cpvs = 6});
+    const auto without = select_impostors(problem, {}, {}, {});
+    const auto with = select_impostors(problem, {.exchange_rounds = 5}, {}, {});
+    EXPECT_LE(with.summary.bytes, without.summary.bytes) << "seed " << seed;
+  }
+}
+
+TEST(SelectorLaws, OrderOfCpvsDoesNotMatterForExactGains) {
+  for (std::uint64_t seed = 1; seed <= 100; ++seed) {
+    const auto problem = random_problem(seed, {.nodes = 20, .candidates = 40, .cpvs = 8, .demand = 20.0});
+    std::vector<Row> rows;
+    const std::uint32_t last = problem.cpv_count() - 1;
+    for (std::uint32_t c = 0; c < problem.candidate_count(); ++c) {
+      Row row{problem.node[c], problem.bytes[c], {}};
+      for (auto e = problem.offset[c]; e < problem.offset[c + 1]; ++e) row.gain[last - problem.cpv[e]] = {problem.gain[e]};
+      rows.push_back(row);
+    }
+    const auto turned = make_problem(problem.parent, rows, std::vector<double>(problem.deficit.rbegin(), problem.deficit.rend()));
+    const auto picked = select_impostors(problem, {.bound_iterations = 0}, {}, {});
+    const auto picked_turned = select_impostors(turned, {.bound_iterations = 0}, {}, {});
+    EXPECT_EQ(picked.summary.picked_by_greedy, picked_turned.summary.picked_by_greedy) << "seed " << seed;
+    if (picked.summary.stalled == 0) {
+      EXPECT_EQ(picked.summary.bytes_greedy, picked_turned.summary.bytes_greedy) << "seed " << seed;
+    }
+  }
+}
+
+TEST(BruteForceOracle, OptimumFallsWithTheBudgetAndWithMoreCandidates) {
+  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+    auto problem = random_problem(seed, {});
+    const auto strict = BruteForce(problem).optimum();
+    auto fewer = problem;
+    fewer.node.pop_back();
+    fewer.bytes.pop_back();
+    fewer.offset.pop_back();
+    fewer.cpv.resize(fewer.offset.back());
+    fewer.gain.resize(fewer.offset.back());
+    if (const auto exact = BruteForce(fewer).optimum()) {
+      ASSERT_TRUE(strict.has_value());
+      EXPECT_LE(strict->bytes, exact->bytes);
+    }
+    for (auto& deficit : problem.deficit) deficit -= 1.0;
+    const auto relaxed = BruteForce(problem).optimum();
+    if (strict) {
+      EXPECT_LE(relaxed->bytes, strict->bytes);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace standin::test
