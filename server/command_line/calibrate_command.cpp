@@ -1,0 +1,131 @@
+// calibrate: fit this machine's time model, or say how a fitted one does here.
+#include <cstdio>
+#include <iostream>
+
+#include "estimation/calibrate.h"
+#include "render/base/error.h"
+#include "render/device/fingerprint.h"
+#include "render/scene/city.h"
+#include "render/scene/load.h"
+#include "server/command_line/commands.h"
+#include "server/job/world.h"
+
+namespace standin {
+namespace {
+
+using nlohmann::json;
+
+// The built-in training set: two cities that differ in seed and in triangles per object.
+std::vector<Scene> training_scenes(const CommandContext& context) {
+  std::vector<Scene> scenes;
+  for (const auto& file : context.arguments.scenes) scenes.push_back(load_scene(file, load_options(context.spec)));
+  if (!scenes.empty()) return scenes;
+  scenes.push_back(make_city({300, 500'000, 101}));
+  scenes.push_back(make_city({900, 700'000, 102}));
+  return scenes;
+}
+
+DeviceKind device_of(const JobSpec& spec) {
+  return spec.device == "egl" ? DeviceKind::kEgl : DeviceKind::kOsMesa;
+}
+
+std::vector<TimedFrame> timed_frames(const std::vector<Scene>& scenes, const CommandContext& context, Context& device, FrameTimer& timer) {
+  CalibrationOptions options;
+  options.seconds = context.arguments.seconds / static_cast<double>(scenes.size());
+  options.seed = context.spec.seed;
+  std::vector<TimedFrame> frames;
+  for (std::uint32_t group = 0; group < scenes.size(); ++group) {
+    context.budget.report("calibrate", static_cast<double>(group) / static_cast<double>(scenes.size()));
+    const auto some = sample_frames(scenes[group], group, device, timer, camera_of(context.spec), options, context.budget);
+    frames.insert(frames.end(), some.begin(), some.end());
+  }
+  return frames;
+}
+
+Target make_target(const FitSummary& fit, const Context& device, const FrameTimer& timer, const JobSpec& spec) {
+  Target target;
+  target.model = fit.model;
+  target.device = spec.device;
+  target.renderer = device.renderer();
+  target.gl_version = device.version();
+  target.processor = processor_name();
+  target.id = target.device + " on " + target.processor;
+  target.reference_ms = timer.reference_ms();
+  target.samples = fit.frames;
+  target.median_error = fit.median_error;
+  target.p90_error = fit.p90_error;
+  target.measured_coverage = fit.measured_coverage;
+  target.left_out = fit.left_out;
+  return target;
+}
+
+json fit_json(const FitSummary& fit) {
+  json terms = json::object();
+  for (std::size_t i = 0; i < kTermCount; ++i) terms[std::string(term_name(static_cast<Term>(i)))] = fit.model.milliseconds_per_unit[i];
+  return {{"stopped", fit.stopped},
+          {"frames", fit.frames},
+          {"median_error", fit.median_error},
+          {"p90_error", fit.p90_error},
+          {"coverage", fit.measured_coverage},
+          {"bound_over_measured_median", fit.bound_over_measured_median},
+          {"milliseconds_per_unit", terms},
+          {"pixel_cap_ms", std::isfinite(fit.model.pixel_cap_ms) ? json(fit.model.pixel_cap_ms) : json()},
+          {"left_out", fit.left_out}};
+}
+
+void print_fit(const FitSummary& fit) {
+  std::printf(
+      "%u frames; held out: median error %.1f %%, p90 %.1f %%, the bound covers %.2f %% and is %.2fx the measured time at the median\n",
+      fit.frames, 100 * fit.median_error, 100 * fit.p90_error, 100 * fit.measured_coverage, fit.bound_over_measured_median);
+  for (const auto& reason : fit.left_out) std::printf("  left out: %s\n", reason.c_str());
+}
+
+// Each term in units of another, for people.
+void explain(const TimeModel& model) {
+  const auto microseconds = [&](Term term) { return 1e3 * model.milliseconds_per_unit[static_cast<std::size_t>(term)]; };
+  std::printf("an empty frame costs %.0f us\na draw call %.2f us\na texture switch %.2f us", microseconds(Term::kFrame),
+              microseconds(Term::kDraws), microseconds(Term::kTextureSwitches));
+  const double pixel = microseconds(Term::kTexturedPixels);
+  if (pixel > 0) std::printf(", as much as %.0f textured pixels", microseconds(Term::kTextureSwitches) / pixel);
+  std::printf("\na thousand triangles %.0f us, %.0f us more on screen and %.0f us more where they cover pixels\n",
+              1e3 * microseconds(Term::kTriangles), 1e3 * microseconds(Term::kOnScreenTriangles),
+              1e3 * microseconds(Term::kCoveringTriangles));
+  std::printf("a million pixels: plain %.1f ms, textured %.1f ms, masked %.1f ms, of impostors %.1f ms\n",
+              1e3 * microseconds(Term::kPlainPixels), 1e3 * pixel, 1e3 * microseconds(Term::kMaskedPixels),
+              1e3 * microseconds(Term::kImpostorPixels));
+}
+
+int evaluate_target(const CommandContext& context) {
+  const Target target = read_target(context.arguments.evaluate);
+  const auto device = make_context(device_of(context.spec), context.spec.width, context.spec.height);
+  if (context.spec.device != target.device || device->renderer() != target.renderer)
+    throw Failure(ErrorWord::kDeviceUnavailable, "target " + context.arguments.evaluate + " was measured on " + target.device + ", " +
+                                                     target.renderer + "; this is " + context.spec.device + ", " + device->renderer());
+  const auto timer = make_cpu_frame_timer(*device, {.reference_ms = target.reference_ms});
+  const Evaluation result = evaluate(target.model, timed_frames(training_scenes(context), context, *device, *timer));
+  const json object = {{"frames", result.frames},       {"median_error", result.median_error},
+                       {"p90_error", result.p90_error}, {"coverage", result.coverage},
+                       {"misses", result.misses},       {"bound_over_measured_median", result.bound_over_measured_median}};
+  std::cout << object.dump(2) << "\n";
+  return result.coverage >= target.model.coverage ? 0 : 1;
+}
+
+}  // namespace
+
+int calibrate_command(const CommandContext& context) {
+  const TimingLock lock(context.budget);
+  if (!context.arguments.evaluate.empty()) return evaluate_target(context);
+  if (context.arguments.output.empty()) throw Failure(ErrorWord::kBadUsage, "calibrate needs -o FILE, or --evaluate FILE");
+  const auto device = make_context(device_of(context.spec), context.spec.width, context.spec.height);
+  const auto timer = make_cpu_frame_timer(*device, {});
+  const FitSummary fit = fit_time_model(timed_frames(training_scenes(context), context, *device, *timer), CalibrationOptions{}.coverage);
+  write_target(make_target(fit, *device, *timer, context.spec), context.arguments.output);
+  if (context.arguments.json)
+    std::cout << fit_json(fit).dump(2) << "\n";
+  else
+    print_fit(fit);
+  if (context.arguments.explain) explain(fit.model);
+  return 0;
+}
+
+}  // namespace standin
