@@ -43,15 +43,54 @@ struct PatchSum {
     vector_area_m2 += vector_area;
     moments += glm::outerProduct(vector_area, vector_area / area);
   }
-  [[nodiscard]] double facing_m2() const { return std::sqrt(area_m2 * largest_eigenvalue_bound(moments)); }
+  /// sum |a.w| <= root; of that, back-face culling leaves sum max(a.w, 0) = (sum |a.w| + (sum a).w) / 2, half where the surface is closed.
+  [[nodiscard]] double facing_m2(bool double_sided) const {
+    const double both_sides_m2 = std::sqrt(area_m2 * largest_eigenvalue_bound(moments));
+    return double_sided ? both_sides_m2 : 0.5 * (both_sides_m2 + glm::length(vector_area_m2));
+  }
 };
+
+struct MeshInEye {
+  MeshInEye(const Mat3& eye_from_mesh_, const Vec3& origin_, double winding_)
+      : eye_from_mesh(eye_from_mesh_), eye_area_from_mesh(winding_ * cofactor(eye_from_mesh_)), origin(origin_) {}
+  Mat3 eye_from_mesh;
+  Mat3 eye_area_from_mesh;  // keeps front sides front under a mirroring transform, as the renderer does
+  Vec3 origin;              // of mesh space, in eye space
+
+  [[nodiscard]] double pixels(const SurfacePatch& patch, const Vec3& eye_point, const Projection& projection, bool double_sided) const {
+    const Vec3 vector_area_m2 = eye_area_from_mesh * patch.vector_area_m2;
+    if (!double_sided && !(glm::dot(vector_area_m2, eye_point) < 0.0)) return 0.0;
+    return projection.pixels(eye_point, vector_area_m2);
+  }
+};
+
+struct PartOnScreen {
+  double pixels = 0.0;
+  double triangles = 0.0;
+  double covering_triangles = 0.0;
+};
+
+PartOnScreen part_on_screen(const SurfaceSamples& samples, const MeshInEye& mesh, const Projection& projection, bool double_sided) {
+  PartOnScreen seen;
+  for (const SurfacePatch& patch : samples.patches) {
+    const Vec3 point = mesh.eye_from_mesh * patch.point + mesh.origin;
+    if (projection.sees(point)) seen.pixels += mesh.pixels(patch, point, projection, double_sided);
+  }
+  for (const SurfacePatch& triangle : samples.triangles) {
+    const Vec3 point = mesh.eye_from_mesh * triangle.point + mesh.origin;
+    if (!projection.sees(point)) continue;
+    seen.triangles += samples.triangles_per_sample;
+    seen.covering_triangles += samples.triangles_per_sample * std::min(1.0, mesh.pixels(triangle, point, projection, double_sided));
+  }
+  return seen;
+}
 
 }  // namespace
 
 PixelKind pixel_kind(const Scene& scene, const Part& part) {
   const Material& material = scene.materials[part.material];
-  if (material.alpha_mode == AlphaMode::kMask) return PixelKind::kMasked;
-  return material.texture >= 0 ? PixelKind::kTextured : PixelKind::kPlain;
+  if (material.texture < 0 || scene.meshes[part.mesh].uvs.empty()) return PixelKind::kPlain;
+  return material.alpha_mode == AlphaMode::kMask ? PixelKind::kMasked : PixelKind::kTextured;
 }
 
 FeatureTable::FeatureTable(const Scene& scene, const Camera& camera)
@@ -75,14 +114,15 @@ FeatureTable::ObjectShape FeatureTable::shape_of(const Object& object) {
   for (std::uint32_t p = object.first_part; p < object.first_part + object.part_count; ++p) {
     const Part& part = scene_->parts[p];
     const SurfaceSamples& samples = samples_[part.mesh];
+    const PixelKind kind = pixel_kind(*scene_, part);
     shape.counts[Term::kDraws] += 1.0;
-    shape.counts[Term::kTextureSwitches] += scene_->materials[part.material].texture >= 0 ? 1.0 : 0.0;
+    shape.counts[Term::kTextureSwitches] += kind == PixelKind::kPlain ? 0.0 : 1.0;
     shape.counts[Term::kTriangles] += static_cast<double>(scene_->meshes[part.mesh].triangle_count());
     PatchSum sum;
     for (const SurfacePatch& patch : samples.patches) sum.add(world_area_from_mesh * patch.vector_area_m2);
-    FacingArea& area = shape.area[static_cast<std::size_t>(pixel_kind(*scene_, part))];
+    FacingArea& area = shape.area[static_cast<std::size_t>(kind)];
     area.total_m2 += sum.area_m2;
-    area.facing_m2 += sum.facing_m2();
+    area.facing_m2 += sum.facing_m2(scene_->materials[part.material].double_sided);
     for (const SurfacePatch& triangle : samples.triangles)
       covering.push_back({glm::length(world_area_from_mesh * triangle.vector_area_m2), samples.triangles_per_sample});
   }
@@ -115,28 +155,16 @@ double FeatureTable::covering_triangles(const ObjectShape& shape, double pixels_
 Features FeatureTable::estimate(std::uint32_t object, const PreparedView& view) const {
   const Object& drawn = scene_->objects[object];
   if (!may_intersect(view.planes, drawn.bounds)) return {};
-  const Projection projection(camera_);
-  const Mat3 eye_from_mesh = view.eye_from_world * Mat3(drawn.world_from_object);
-  const Mat3 eye_area_from_mesh = cofactor(eye_from_mesh);
-  const Vec3 mesh_origin = view.eye_from_world * (Vec3(drawn.world_from_object[3]) - view.position);
+  const Mat3 world_from_mesh(drawn.world_from_object);
+  const MeshInEye mesh{view.eye_from_world * world_from_mesh, view.eye_from_world * (Vec3(drawn.world_from_object[3]) - view.position),
+                       glm::determinant(world_from_mesh) < 0.0 ? -1.0 : 1.0};
   Features features = shapes_[object].counts;
   for (std::uint32_t p = drawn.first_part; p < drawn.first_part + drawn.part_count; ++p) {
     const Part& part = scene_->parts[p];
-    const SurfaceSamples& samples = samples_[part.mesh];
-    double& pixels = features[kPixelTerm[static_cast<std::size_t>(pixel_kind(*scene_, part))]];
-    for (const SurfacePatch& patch : samples.patches) {
-      const Vec3 point = eye_from_mesh * patch.point + mesh_origin;
-      if (projection.sees(point)) pixels += projection.pixels(point, eye_area_from_mesh * patch.vector_area_m2);
-    }
-    double on_screen = 0.0, covering = 0.0;
-    for (const SurfacePatch& triangle : samples.triangles) {
-      const Vec3 point = eye_from_mesh * triangle.point + mesh_origin;
-      if (!projection.sees(point)) continue;
-      on_screen += 1.0;
-      covering += std::min(1.0, projection.pixels(point, eye_area_from_mesh * triangle.vector_area_m2));
-    }
-    features[Term::kOnScreenTriangles] += on_screen * samples.triangles_per_sample;
-    features[Term::kCoveringTriangles] += covering * samples.triangles_per_sample;
+    const PartOnScreen seen = part_on_screen(samples_[part.mesh], mesh, Projection(camera_), scene_->materials[part.material].double_sided);
+    features[kPixelTerm[static_cast<std::size_t>(pixel_kind(*scene_, part))]] += seen.pixels;
+    features[Term::kOnScreenTriangles] += seen.triangles;
+    features[Term::kCoveringTriangles] += seen.covering_triangles;
   }
   for (const Term term : kPixelTerm) features[term] = std::min(features[term], kMaxScreensPerObject * screen_pixels_);
   return features;

@@ -21,6 +21,7 @@ inline constexpr double kMaxScreensPerObject = 4.0;
 /// How the pixels of a part are shaded; one pixel term each.
 enum class PixelKind : std::size_t { kPlain, kTextured, kMasked, kCount };
 inline constexpr std::size_t kPixelKindCount = static_cast<std::size_t>(PixelKind::kCount);
+/// As the renderer draws it: a texture needs coordinates, and an alpha test needs a texture.
 [[nodiscard]] PixelKind pixel_kind(const Scene& scene, const Part& part);
 
 /// `scene` must outlive the table. Const members may be called from several threads.

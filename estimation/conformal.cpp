@@ -1,0 +1,60 @@
+#include "estimation/conformal.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace standin {
+namespace {
+
+constexpr std::size_t kMaxSteps = 5;
+// A prediction of nothing says nothing; it would make every ratio infinite.
+constexpr double kLeastPredictedMs = 1e-6;
+
+/// Rank (from 1) of the ratio to take among n.
+std::size_t conformal_rank(std::size_t n, double coverage) {
+  return static_cast<std::size_t>(std::ceil((static_cast<double>(n) + 1.0) * coverage));
+}
+
+double conformal_ratio(const HeldOut* first, const HeldOut* last, double coverage) {
+  std::vector<double> ratios;
+  for (const HeldOut* frame = first; frame != last; ++frame)
+    ratios.push_back(frame->measured_ms / std::max(frame->predicted_ms, kLeastPredictedMs));
+  std::sort(ratios.begin(), ratios.end());
+  const std::size_t rank = conformal_rank(ratios.size(), coverage);
+  return rank <= ratios.size() ? ratios[rank - 1] : kTooFewFactor * ratios.back();
+}
+
+/// Where the steps begin in the sorted frames, and their end; equal predictions stay in one step.
+std::vector<std::size_t> step_borders(const std::vector<HeldOut>& sorted, double coverage) {
+  std::size_t steps = kMaxSteps;
+  while (steps > 1 && conformal_rank(sorted.size() / steps, coverage) > sorted.size() / steps) --steps;
+  std::vector<std::size_t> borders = {0};
+  for (std::size_t i = 1; i < steps; ++i) {
+    const double predicted_ms = sorted[i * sorted.size() / steps].predicted_ms;
+    const auto first =
+        std::partition_point(sorted.begin(), sorted.end(), [=](const HeldOut& frame) { return frame.predicted_ms < predicted_ms; });
+    const auto border = static_cast<std::size_t>(first - sorted.begin());
+    if (border > borders.back()) borders.push_back(border);
+  }
+  borders.push_back(sorted.size());
+  return borders;
+}
+
+}  // namespace
+
+std::vector<BoundStep> conformal_steps(std::vector<HeldOut> held_out, double coverage) {
+  std::sort(held_out.begin(), held_out.end(), [](const HeldOut& a, const HeldOut& b) {
+    return a.predicted_ms != b.predicted_ms ? a.predicted_ms < b.predicted_ms : a.measured_ms < b.measured_ms;
+  });
+  std::vector<std::size_t> borders = step_borders(held_out, coverage);
+  std::vector<BoundStep> result;
+  for (std::size_t i = 0; i + 1 < borders.size(); ++i) {
+    const bool is_last = borders[i + 1] == held_out.size();
+    const double until_ms = is_last ? std::numeric_limits<double>::infinity() : held_out[borders[i + 1]].predicted_ms;
+    result.push_back({until_ms, conformal_ratio(held_out.data() + borders[i], held_out.data() + borders[i + 1], coverage)});
+  }
+  return result;
+}
+
+}  // namespace standin

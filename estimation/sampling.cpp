@@ -1,0 +1,227 @@
+// Which frames calibration times (thesis 5.8.1, Fig. 5.5 and 5.6): clusters of the object hierarchy from random viewpoints, whole frames
+// from inside and around the scene with all or some objects, baked impostors from inside their view cells, alone and among the originals of
+// all other objects, and now and then an empty frame. The sequence depends on the seed alone; how far it gets, on the frames' times.
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "estimation/calibrate.h"
+#include "estimation/feature_table.h"
+#include "render/base/error.h"
+#include "render/base/rng.h"
+#include "render/device/renderer.h"
+#include "render/impostor/atlas.h"
+#include "render/impostor/bake.h"
+#include "render/scene/hierarchy.h"
+
+namespace standin {
+namespace {
+
+constexpr std::size_t kMaxFrames = 5000;  // a scene; more teach the fit nothing
+constexpr double kDrawsPerFrame = 11.0;   // repeats, warm-up and the reference frame's share
+constexpr std::size_t kImpostors = 8;
+constexpr int kImpostorAttempts = 40;
+constexpr std::uint64_t kMaxBakedTriangles = 30'000;  // baking is not what the seconds are for
+constexpr double kEyeHeight_m = 1.7;
+
+double log_uniform(Rng& rng, double low, double high) {
+  return low * std::pow(high / low, rng.uniform());
+}
+
+Vec3 random_direction(Rng& rng, double min_sine, double max_sine) {
+  const double sine = rng.uniform(min_sine, max_sine);
+  const double azimuth = rng.uniform(0.0, 6.28318530717958647693);
+  const double cosine = std::sqrt(std::max(0.0, 1.0 - sine * sine));
+  return {cosine * std::cos(azimuth), sine, cosine * std::sin(azimuth)};
+}
+
+Vec3 random_point(Rng& rng, const Box& box) {
+  return {rng.uniform(box.min.x, box.max.x), rng.uniform(box.min.y, box.max.y), rng.uniform(box.min.z, box.max.z)};
+}
+
+/// Looks from `eye` at `target`, off by up to half the image, so that parts fall outside it.
+View view_towards(Rng& rng, const Vec3& eye, const Vec3& target, const Camera& camera) {
+  const Vec3 offset = target - eye;
+  const double distance_m = glm::length(offset);
+  const Vec3 axis = distance_m > 0.0 ? offset / distance_m : Vec3(0.0, 0.0, -1.0);
+  const Mat3 frame = world_from_eye_rotation(axis);
+  const double right = 0.5 * camera.tan_half_x() * rng.uniform(-1.0, 1.0);
+  const double up = 0.5 * camera.tan_half_y() * rng.uniform(-1.0, 1.0);
+  return {eye, glm::normalize(axis + right * frame[0] + up * frame[1])};
+}
+
+/// Whatever is asked of one frame: what to draw from where.
+struct Setup {
+  View view;
+  DrawList list;
+};
+
+class FrameSampler {
+ public:
+  FrameSampler(const Scene& scene, const Camera& camera, std::uint64_t seed, const WorkBudget& budget)
+      : scene_(scene), camera_(camera), hierarchy_(build_hierarchy(scene)), table_(scene, camera), rng_(seed), budget_(budget) {
+    for (std::uint32_t id = 0; id < scene.objects.size(); ++id) all_objects_.push_back(id);
+    bake_impostors();
+  }
+
+  [[nodiscard]] const ImpostorSet& impostors() const { return impostors_; }
+
+  [[nodiscard]] Setup setup(std::size_t frame) {
+    if (frame % 40 == 0) return {street_view(), {}};
+    switch (frame % 8) {
+      case 0:
+      case 3:
+        return whole();
+      case 2:
+      case 6:
+        return some_objects();
+      case 5:
+        return impostors_.impostors.empty() ? cluster() : impostor(false);
+      case 7:
+        return impostors_.impostors.empty() ? whole() : impostor(true);
+      default:
+        return cluster();
+    }
+  }
+
+  [[nodiscard]] Features features(const Setup& setup) const {
+    Features sum = table_.frame(setup.list.objects, setup.view);
+    std::vector<std::uint32_t> pages;
+    for (const std::uint32_t id : setup.list.impostors) {
+      const Features drawn = impostor_features(impostors_.impostors[id], impostor_bounds_[id], setup.view, camera_);
+      sum += drawn;
+      if (drawn[Term::kDraws] > 0.0)
+        for (const AtlasSlot& slot : impostors_.slots[id]) pages.push_back(slot.page);
+    }
+    std::sort(pages.begin(), pages.end());
+    sum[Term::kTextureSwitches] += static_cast<double>(std::unique(pages.begin(), pages.end()) - pages.begin());
+    return sum;
+  }
+
+ private:
+  /// A node of about log-uniformly many objects.
+  [[nodiscard]] const HierarchyNode& random_node() {
+    const double wanted = log_uniform(rng_, 1.0, static_cast<double>(scene_.objects.size()));
+    const HierarchyNode* node = &hierarchy_.nodes[hierarchy_.leaf[rng_.below(scene_.objects.size())]];
+    while (node->parent >= 0 && node->count < wanted) node = &hierarchy_.nodes[static_cast<std::size_t>(node->parent)];
+    return *node;
+  }
+
+  [[nodiscard]] std::vector<std::uint32_t> objects_of(const HierarchyNode& node) const {
+    const auto first = hierarchy_.order.begin() + node.first;
+    std::vector<std::uint32_t> objects(first, first + node.count);
+    std::sort(objects.begin(), objects.end());
+    return objects;
+  }
+
+  [[nodiscard]] Setup cluster() {
+    const HierarchyNode& node = random_node();
+    const double distance_m = std::max(camera_.near_m, log_uniform(rng_, 0.6, 16.0) * 0.5 * node.bounds.diagonal());
+    const Vec3 eye = node.bounds.centre() + distance_m * random_direction(rng_, -0.1, 0.9);
+    return {view_towards(rng_, eye, node.bounds.centre(), camera_), {objects_of(node), {}}};
+  }
+
+  /// Upright, at eye height above the scene's floor or anywhere in its height, if possible in no object's bounds but large flat ones.
+  [[nodiscard]] View street_view() {
+    Box eyes = scene_.bounds;
+    if (rng_.uniform() < 0.7) eyes.min.y = eyes.max.y = eyes.min.y + kEyeHeight_m;
+    View view;
+    view.position = random_point(rng_, eyes);
+    for (int attempt = 0; attempt < 32 && inside_an_object(view.position); ++attempt) view.position = random_point(rng_, eyes);
+    view.direction = random_direction(rng_, -0.25, 0.25);
+    return view;
+  }
+
+  [[nodiscard]] bool inside_an_object(const Vec3& position) const {
+    return std::any_of(scene_.objects.begin(), scene_.objects.end(), [&](const Object& object) {
+      return object.bounds.contains(position) && object.bounds.diagonal() < 0.5 * scene_.bounds.diagonal();
+    });
+  }
+
+  [[nodiscard]] View orbit_view() {
+    const double distance_m = log_uniform(rng_, 0.6, 5.0) * 0.5 * scene_.bounds.diagonal();
+    return view_towards(rng_, scene_.bounds.centre() + distance_m * random_direction(rng_, 0.0, 0.9), scene_.bounds.centre(), camera_);
+  }
+
+  [[nodiscard]] Setup whole() { return {rng_.uniform() < 0.75 ? street_view() : orbit_view(), {all_objects_, {}}}; }
+
+  [[nodiscard]] Setup some_objects() {
+    Setup setup = whole();
+    const double share = log_uniform(rng_, 0.03, 0.9);
+    std::erase_if(setup.list.objects, [&](std::uint32_t) { return rng_.uniform() >= share; });
+    return setup;
+  }
+
+  [[nodiscard]] Setup impostor(bool among_originals) {
+    const auto id = static_cast<std::uint32_t>(rng_.below(impostors_.impostors.size()));
+    const Impostor& drawn = impostors_.impostors[id];
+    const Shaft& shaft = std::get<Shaft>(drawn.view_cell);
+    const double along_m = shaft.min_distance_m * log_uniform(rng_, 1.001, 3.0);
+    const double right = along_m * shaft.tan_half.x * rng_.uniform(-0.9, 0.9);
+    const double up = along_m * shaft.tan_half.y * rng_.uniform(-0.9, 0.9);
+    const Vec3 eye = shaft.apex + along_m * shaft.axis + right * shaft.right + up * shaft.up;
+    Setup setup{view_towards(rng_, eye, shaft.apex, camera_), {{}, {id}}};
+    if (among_originals)
+      std::set_difference(all_objects_.begin(), all_objects_.end(), drawn.objects.begin(), drawn.objects.end(),
+                          std::back_inserter(setup.list.objects));
+    return setup;
+  }
+
+  [[nodiscard]] std::optional<Impostor> bake_one() {
+    const HierarchyNode& node = random_node();
+    Shaft shaft = shaft_frame(node.bounds.centre(), random_direction(rng_, 0.0, 0.6));
+    shaft.tan_half = Vec2(std::tan(0.5 * std::array{0.19634954, 0.39269908, 0.78539816}[rng_.below(3)]));
+    shaft.min_distance_m = node.bounds.diagonal() * log_uniform(rng_, 1.0, 8.0);
+    BakeRequest request{objects_of(node), shaft};
+    std::uint64_t triangles = 0;
+    for (const std::uint32_t id : request.objects) triangles += scene_.objects[id].triangle_count;
+    if (triangles > kMaxBakedTriangles || !plan_impostor(node.bounds, shaft, camera_, {}).possible) return std::nullopt;
+    Impostor impostor = bake_layered(scene_, request, camera_, {}, budget_);
+    return impostor.quads.empty() ? std::nullopt : std::optional(std::move(impostor));
+  }
+
+  void bake_impostors() {
+    std::vector<Impostor> baked;
+    for (int attempt = 0; attempt < kImpostorAttempts && baked.size() < kImpostors; ++attempt) {
+      budget_.check();
+      if (std::optional<Impostor> impostor = bake_one()) baked.push_back(std::move(*impostor));
+    }
+    for (const Impostor& impostor : baked) {
+      Box& bounds = impostor_bounds_.emplace_back();
+      for (const std::uint32_t id : impostor.objects) bounds.extend(scene_.objects[id].bounds);
+    }
+    impostors_ = pack_atlas(std::move(baked));
+  }
+
+  const Scene& scene_;
+  Camera camera_;
+  Hierarchy hierarchy_;
+  FeatureTable table_;
+  Rng rng_;
+  const WorkBudget& budget_;
+  std::vector<std::uint32_t> all_objects_;
+  ImpostorSet impostors_;
+  std::vector<Box> impostor_bounds_;
+};
+
+}  // namespace
+
+std::vector<TimedFrame> sample_frames(const Scene& scene, std::uint32_t group, Context& context, FrameTimer& timer, const Camera& camera,
+                                      const CalibrationOptions& options, const WorkBudget& budget) {
+  if (!(options.seconds > 0.0)) throw Failure(ErrorWord::kBadUsage, "calibration seconds are " + std::to_string(options.seconds));
+  FrameSampler sampler(scene, camera, options.seed, budget);
+  Renderer renderer(context, scene, camera);
+  renderer.upload(sampler.impostors());
+  std::vector<TimedFrame> frames;
+  for (double spent_ms = 0.0; spent_ms < 1e3 * options.seconds && frames.size() < kMaxFrames;) {
+    budget.check();
+    budget.report("calibrate", spent_ms / (1e3 * options.seconds));
+    const Setup setup = sampler.setup(frames.size());
+    const FrameSample sample = timer.time(renderer, setup.view, setup.list);
+    spent_ms += kDrawsPerFrame * sample.raw_milliseconds;
+    frames.push_back({sampler.features(setup), sample.milliseconds, group});
+  }
+  return frames;
+}
+
+}  // namespace standin
