@@ -11,15 +11,16 @@ namespace {
 // Below this the price D -> lambda / D could overflow; dropping a constraint only lowers the bound.
 constexpr double kLeastDeficit = 1e-200;
 
-/// Constraints are kept in units of their own deficit: coverage a / D in [0, 1] of a demand of 1, price lambda D in bytes. Deficits of
-/// 1e-12 and 1e12 then weigh the same.
+/// Constraint q = (CPV, stage) is kept in units of its own deficit: coverage a / D in [0, 1] of a demand of 1, at a price lambda D in
+/// bytes. Deficits of 1e-12 and 1e12 then weigh the same.
 class Dual {
  public:
   Dual(const SelectionProblem& problem, const Columns& columns, const std::vector<bool>& ignored)
-      : problem_(problem), columns_(columns), active_(problem.deficit.size()), price_(problem.deficit.size(), 0.0) {
-    for (std::size_t q = 0; q < active_.size(); ++q)
-      active_[q] = problem.deficit[q] > kLeastDeficit && (ignored.empty() || !ignored[q / problem.stages]);
-    // Relative error of the longest chain of additions behind the value (each term rounded once more by its product).
+      : problem_(problem), columns_(columns), constraints_(problem.deficit.size()), price_(problem.deficit.size(), 0.0) {
+    for (std::size_t q = 0; q < constraints_.size(); ++q)
+      if (problem.deficit[q] > kLeastDeficit && (ignored.empty() || !ignored[q / problem.stages]))
+        constraints_[q].deficit = problem.deficit[q];
+    // Of the longest chain of additions behind the value; its terms are rounded a few times more.
     const double chain = static_cast<double>(longest_row() + problem.bytes.size() + problem.deficit.size() + 8);
     relative_error_ = std::max(1e-12, chain * 0.5 * std::numeric_limits<double>::epsilon());
   }
@@ -33,26 +34,6 @@ class Dual {
     }
   }
 
-  /// L(price) less its rounding error; `shortage[q]` becomes 1 - coverage by the candidates that are worth their price (a subgradient).
-  double evaluate(std::vector<double>& shortage) {
-    double value = 0.0;
-    double magnitude = 0.0;
-    for (std::size_t q = 0; q < price_.size(); ++q) {
-      shortage[q] = active_[q] ? 1.0 : 0.0;
-      value += price_[q];
-    }
-    magnitude += value;
-    for (std::uint32_t c = 0; c < problem_.candidate_count(); ++c) {
-      const double paid = payment(c);
-      magnitude += paid;
-      if (paid <= problem_.bytes[c]) continue;
-      value += problem_.bytes[c] - paid;
-      magnitude += problem_.bytes[c];
-      cover_with(c, shortage);
-    }
-    return value - relative_error_ * magnitude;
-  }
-
   /// Deflected subgradient from the present prices; returns the best value seen.
   double improve(double upper_bound_bytes, int iterations, const WorkBudget& budget) {
     std::vector<double> shortage(price_.size());
@@ -64,6 +45,7 @@ class Dual {
       double squared = 0.0;
       for (std::size_t q = 0; q < direction.size(); ++q) {
         direction[q] = 0.7 * shortage[q] + 0.3 * direction[q];
+        if (price_[q] == 0.0) direction[q] = std::max(direction[q], 0.0);  // a price of 0 cannot fall: no part of the step
         squared += direction[q] * direction[q];
       }
       if (squared <= 0.0) break;  // optimal prices
@@ -76,37 +58,64 @@ class Dual {
   }
 
  private:
-  [[nodiscard]] double coverage(std::uint64_t entry, std::uint32_t stage) const {
-    const std::size_t q = constraint(entry, stage);
-    const double gain = problem_.gain[entry * problem_.stages + stage];
-    if (!active_[q] || gain <= 0.0) return 0.0;
-    return gain >= problem_.deficit[q] ? 1.0 : gain / problem_.deficit[q];
-  }
+  struct Constraint {
+    double deficit = 0.0;         // 0: dropped
+    double bytes_per_gain = 0.0;  // price / deficit
+  };
+
   [[nodiscard]] std::size_t constraint(std::uint64_t entry, std::uint32_t stage) const {
     return static_cast<std::size_t>(problem_.cpv[entry]) * problem_.stages + stage;
+  }
+  /// a = min(max(gain, 0), deficit), 0 for a dropped constraint.
+  [[nodiscard]] double useful_gain(std::uint64_t entry, std::uint32_t stage) const {
+    return std::max(0.0, std::min(problem_.gain[entry * problem_.stages + stage], constraints_[constraint(entry, stage)].deficit));
+  }
+
+  void raise(std::uint32_t cpv, std::uint32_t stage, std::vector<double>& slack) {
+    const std::size_t q = static_cast<std::size_t>(cpv) * problem_.stages + stage;
+    const double deficit = constraints_[q].deficit;
+    double most = std::numeric_limits<double>::infinity();
+    for (const Serving& s : columns_.of(cpv))
+      if (const double useful = useful_gain(s.entry, stage); useful > 0.0) most = std::min(most, slack[s.candidate] / (useful / deficit));
+    if (!(most > 0.0) || std::isinf(most)) return;
+    price_[q] = most;
+    for (const Serving& s : columns_.of(cpv))
+      if (const double useful = useful_gain(s.entry, stage); useful > 0.0) slack[s.candidate] -= most * (useful / deficit);
+  }
+
+  /// L(price) less its rounding error; `shortage[q]` becomes 1 - coverage by the candidates that are worth their price (a subgradient).
+  double evaluate(std::vector<double>& shortage) {
+    double value = 0.0;
+    for (std::size_t q = 0; q < price_.size(); ++q) {
+      const bool dropped = constraints_[q].deficit <= 0.0;
+      shortage[q] = dropped ? 0.0 : 1.0;
+      constraints_[q].bytes_per_gain = dropped ? 0.0 : price_[q] / constraints_[q].deficit;
+      value += price_[q];
+    }
+    double magnitude = value;
+    for (std::uint32_t c = 0; c < problem_.candidate_count(); ++c) {
+      const double paid = payment(c);
+      magnitude += paid;
+      if (paid <= problem_.bytes[c]) continue;
+      value += problem_.bytes[c] - paid;
+      magnitude += problem_.bytes[c];
+      cover_with(c, shortage);
+    }
+    return value - relative_error_ * magnitude;
   }
 
   [[nodiscard]] double payment(std::uint32_t candidate) const {
     double sum = 0.0;
     for (std::uint64_t e = problem_.offset[candidate]; e < problem_.offset[candidate + 1]; ++e)
-      for (std::uint32_t k = 0; k < problem_.stages; ++k)
-        if (const double price = price_[constraint(e, k)]; price > 0.0) sum += price * coverage(e, k);
+      for (std::uint32_t k = 0; k < problem_.stages; ++k) sum += constraints_[constraint(e, k)].bytes_per_gain * useful_gain(e, k);
     return sum;
   }
 
   void cover_with(std::uint32_t candidate, std::vector<double>& shortage) const {
     for (std::uint64_t e = problem_.offset[candidate]; e < problem_.offset[candidate + 1]; ++e)
-      for (std::uint32_t k = 0; k < problem_.stages; ++k) shortage[constraint(e, k)] -= coverage(e, k);
-  }
-
-  void raise(std::uint32_t cpv, std::uint32_t stage, std::vector<double>& slack) {
-    const auto column = columns_.of(cpv);
-    double most = std::numeric_limits<double>::infinity();
-    for (const Serving& s : column)
-      if (const double share = coverage(s.entry, stage); share > 0.0) most = std::min(most, slack[s.candidate] / share);
-    if (!(most > 0.0) || std::isinf(most)) return;
-    price_[static_cast<std::size_t>(cpv) * problem_.stages + stage] = most;
-    for (const Serving& s : column) slack[s.candidate] -= most * coverage(s.entry, stage);
+      for (std::uint32_t k = 0; k < problem_.stages; ++k)
+        if (const double useful = useful_gain(e, k); useful > 0.0)
+          shortage[constraint(e, k)] -= useful / constraints_[constraint(e, k)].deficit;
   }
 
   [[nodiscard]] std::vector<std::uint32_t> cpvs_by_coverage() const {
@@ -125,8 +134,8 @@ class Dual {
 
   const SelectionProblem& problem_;
   const Columns& columns_;
-  std::vector<bool> active_;
-  std::vector<double> price_;
+  std::vector<Constraint> constraints_;
+  std::vector<double> price_;  // bytes, >= 0
   double relative_error_ = 0.0;
 };
 
