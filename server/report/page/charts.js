@@ -7,20 +7,21 @@ function cssColour(name) {
 }
 
 function axis(label, format, logarithmic) {
-  const shared = { stroke: cssColour("--ink"), grid: { stroke: cssColour("--line"), width: 1 }, ticks: { stroke: cssColour("--line"), width: 1 } };
-  const values = (chart, splits) => splits.map((value) => (value === null ? "" : format(value)));
-  return { ...shared, label, labelSize: 22, labelFont: "14px system-ui", font: "13px system-ui", size: label.length > 0 ? 66 : 50, values: logarithmic ? (chart, splits) => values(chart, decades(splits)) : values };
+  const line = cssColour("--line"), ink = cssColour("--ink");
+  const shown = logarithmic ? (chart, splits) => labelledSplits(splits) : (chart, splits) => splits;
+  return {
+    label, labelSize: 22, labelFont: "14px system-ui", font: "13px system-ui", size: 66, stroke: ink,
+    grid: { stroke: line, width: 1, filter: shown }, ticks: { stroke: line, width: 1, filter: shown }, filter: shown,
+    values: (chart, splits) => splits.map((value) => (value === null ? "" : format(value))),
+  };
 }
 
-/// Labels only at powers of ten (and, on less than two decades, at 2 and 5 times those): others would overlap.
-function decades(splits) {
-  const shown = splits.filter((value) => value !== null);
-  const wide = shown.length > 0 && shown[shown.length - 1] / shown[0] > 200;
-  return splits.map((value) => {
-    if (value === null) return null;
-    const lead = Math.round(value / Math.pow(10, Math.floor(Math.log10(value) + 1e-9)));
-    return lead === 1 || (!wide && (lead === 2 || lead === 5)) ? value : null;
-  });
+/// Of a logarithmic axis only powers of ten are labelled (and, on two decades or less, 2 and 5 times those): others would overlap.
+function labelledSplits(splits) {
+  const known = splits.filter((value) => value !== null);
+  const wide = known.length > 0 && known[known.length - 1] / known[0] > 200;
+  const lead = (value) => Math.round(value / Math.pow(10, Math.floor(Math.log10(value) + 1e-9)));
+  return splits.map((value) => (value !== null && (lead(value) === 1 || (!wide && [2, 5].includes(lead(value)))) ? value : null));
 }
 
 /// options: {label (for screen readers), x: {label, format, log}, y: {...}, series: [{name, colour (css variable), dash, points, values}], xs, height}
@@ -51,6 +52,7 @@ function drawChart(chart) {
     axes: [horizontal, axis(y.label, y.format, y.log)],
     series: [{ label: x.label, value: (plot, value) => (value === null ? NONE : x.format(value)) }, ...options.series.map((series) => plotSeries(series, y.format))],
     cursor: { drag: { x: false, y: false } },
+    legend: { show: options.series.length > 1, markers: { width: 3, fill: "transparent", dash: (plot, index) => (index > 0 && options.series[index - 1].dash ? "dotted" : "solid") } },
   };
   chart.plot = new uPlot(settings, [options.xs, ...options.series.map((series) => series.values)], host);
 }

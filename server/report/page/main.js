@@ -37,8 +37,8 @@ function memoryTile(metrics) {
   const memory = field(metrics, "memory.total_bytes");
   if (!isNumber(memory)) return null;
   const gap = field(metrics, "bound.gap"), estimated = field(metrics, "bound.gap_estimated");
-  if (isNumber(gap)) return ["Memory of the impostors", bytes(memory), `at most ${percent(gap)} above the proven minimum`];
-  return ["Memory of the impostors", bytes(memory), isNumber(estimated) ? `${percent(estimated)} above the lower bound, over estimated costs` : ""];
+  if (isNumber(gap)) return ["Memory of the impostors", bytes(memory), `at most ${percent(gap)} of it could be saved`];
+  return ["Memory of the impostors", bytes(memory), isNumber(estimated) ? `gap to the lower bound ${percent(estimated)}, over estimated costs` : ""];
 }
 
 function reachTile(metrics) {

@@ -34,7 +34,7 @@ function bars(title, groups) {
 function memoryBreakdown(impostors) {
   const byClass = (title, classes, valueOf) => bars(title, groupBytes(impostors, classes.map(([, name]) => name), (impostor) => className(classes, valueOf(impostor))));
   const techniques = [...new Set(impostors.map((impostor) => impostor.technique))].sort();
-  return element("div", { class: "side" },
+  return element("div", { class: "side pair" },
     bars("By technique", groupBytes(impostors, techniques, (impostor) => impostor.technique)),
     byClass("By number of layers", LAYER_CLASSES, (impostor) => impostor.layers),
     byClass("By size of the impostor", SIZE_CLASSES, impostorBytes),

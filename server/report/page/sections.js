@@ -68,7 +68,7 @@ function memorySection({ metrics, impostors }) {
 }
 
 function image(picture, label) {
-  return element("img", { src: picture.src, alt: `${label}. ${picture.caption}`, loading: "lazy", decoding: "async" });
+  return element("img", { src: picture.src, alt: `${label}. ${picture.caption}` });
 }
 
 const VIEW_IMAGES = [["original", "Original"], ["with_impostors", "With impostors"], ["difference", "Difference, amplified 4x"]];
@@ -129,8 +129,11 @@ function curvesSection({ metrics }) {
   return section("curves", "What more run time would buy", "Each stage that approximates can be made more exact for more time; these points are from this run.", element("div", { class: "side" }, ...figures));
 }
 
+const STAGE_ORDER = ["load", "visibility", "view_space", "candidates", "select", "bake", "verify"];
+
 function stagesSection({ metrics }) {
-  const stages = Object.entries(metrics.stages_s || {}).filter(([, value]) => isNumber(value));
+  const rank = ([name]) => (STAGE_ORDER.includes(name) ? STAGE_ORDER.indexOf(name) : STAGE_ORDER.length);
+  const stages = Object.entries(metrics.stages_s || {}).filter(([, value]) => isNumber(value)).sort((a, b) => rank(a) - rank(b));
   if (stages.length === 0) return null;
   const total = stages.reduce((sum, [, value]) => sum + value, 0);
   const rows = stages.map(([name, value]) => ({ name: name.replaceAll("_", " "), value }));

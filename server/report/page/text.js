@@ -13,7 +13,7 @@ const NONE = "\u2013";
 
 function significant(value, digits) {
   if (!isNumber(value)) return NONE;
-  if (value !== 0 && (Math.abs(value) < 1e-3 || Math.abs(value) >= 1e9)) return value.toExponential(digits - 1);
+  if (value !== 0 && (Math.abs(value) < 1e-3 || Math.abs(value) >= 1e9)) return value.toExponential(digits - 1).replace(/\.?0*e/, "e");
   const decimals = Math.max(0, digits - 1 - Math.floor(Math.log10(Math.abs(value) || 1)));
   return value.toLocaleString("en", { maximumFractionDigits: Math.min(decimals, 6) });
 }
