@@ -1,7 +1,7 @@
 // Rays against triangles, behind one header (the only file pair that includes Embree).
 //
 // Robust scenes (no leaks through shared edges); positions are stored relative to a local origin given in double. Alpha-masked texels count
-// as transparent where `honour_masks`. Instances are Embree instances. Thread-safe for queries.
+// as transparent where `honour_masks`. Instances are Embree instances. Thread-safe for queries. The scene must outlive the raytracer.
 #pragma once
 
 #include <cstdint>
@@ -22,7 +22,7 @@ class Raytracer {
  public:
   struct Options {
     bool honour_masks = true;
-    int threads = 1;
+    int threads = 1;  // of the build
   };
   explicit Raytracer(const Scene& scene) : Raytracer(scene, Options{}) {}
   Raytracer(const Scene& scene, const Options& options);
@@ -34,11 +34,13 @@ class Raytracer {
 
   /// Nearest hit with distance in (from_m, infinity); `direction` of unit length. Ties: lowest object id.
   [[nodiscard]] std::optional<Hit> nearest(const Vec3& origin, const Vec3& direction, double from_m = 0.0) const;
-  /// Every hit along the ray in [from_m, to_m], ascending.
+  /// Every hit along the ray in [from_m, to_m], ascending, coincident ones included. Distances are single precision: leave room at the
+  /// ends.
   [[nodiscard]] std::vector<Hit> all(const Vec3& origin, const Vec3& direction, double from_m, double to_m) const;
 
+  struct State;  // Embree's side, in the source file
+
  private:
-  struct State;
   std::unique_ptr<State> state_;
 };
 

@@ -1,0 +1,271 @@
+#include "render/visibility/raytracer.h"
+
+#include <embree3/rtcore.h>
+#include <tbb/global_control.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/gtc/type_ptr.hpp>
+#include <limits>
+#include <map>
+#include <mutex>
+#include <numeric>
+#include <string>
+#include <utility>
+
+#include "render/base/error.h"
+#include "render/visibility/alpha_mask.h"
+
+namespace standin {
+namespace {
+
+struct Release {
+  void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
+  void operator()(RTCGeometry geometry) const { rtcReleaseGeometry(geometry); }
+};
+using SceneHandle = std::unique_ptr<std::remove_pointer_t<RTCScene>, Release>;
+using GeometryHandle = std::unique_ptr<std::remove_pointer_t<RTCGeometry>, Release>;
+
+// The process's only device. It keeps the first error that Embree reports, on whatever thread, until somebody asks.
+class Device {
+ public:
+  static Device& instance() {
+    static Device device;
+    return device;
+  }
+  [[nodiscard]] RTCDevice handle() const { return device_; }
+  void throw_reported() {
+    const std::scoped_lock lock(mutex_);
+    if (!error_.empty()) throw Failure(ErrorWord::kInternal, "Embree: " + std::exchange(error_, {}));
+  }
+
+ private:
+  Device() : device_(rtcNewDevice(nullptr)) {
+    if (device_ == nullptr)
+      throw Failure(ErrorWord::kInternal, "Embree gives no device, error " + std::to_string(rtcGetDeviceError(nullptr)));
+    rtcSetDeviceErrorFunction(device_, keep, this);
+  }
+  static void keep(void* self, RTCError code, const char* message) {
+    auto& device = *static_cast<Device*>(self);
+    const std::scoped_lock lock(device.mutex_);
+    if (device.error_.empty()) device.error_ = std::string(message) + " (error " + std::to_string(code) + ")";
+  }
+
+  RTCDevice device_;
+  std::mutex mutex_;
+  std::string error_;
+};
+
+SceneHandle new_scene() {
+  SceneHandle scene(rtcNewScene(Device::instance().handle()));
+  // Robust: watertight edges. Context filter: every hit passes through the query's own callback.
+  rtcSetSceneFlags(scene.get(), static_cast<RTCSceneFlags>(RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION));
+  rtcSetSceneBuildQuality(scene.get(), RTC_BUILD_QUALITY_MEDIUM);  // HIGH would split triangles and report them twice
+  return scene;
+}
+
+// Copies: Embree reads 16 bytes per vertex, past the end of an array of three floats each.
+GeometryHandle new_triangles(const std::vector<glm::vec3>& positions, const std::vector<std::uint32_t>& indices) {
+  GeometryHandle geometry(rtcNewGeometry(Device::instance().handle(), RTC_GEOMETRY_TYPE_TRIANGLE));
+  void* vertices =
+      rtcSetNewGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(glm::vec3), positions.size());
+  void* triangles =
+      rtcSetNewGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(std::uint32_t), indices.size() / 3);
+  Device::instance().throw_reported();
+  std::copy_n(positions.data(), positions.size(), static_cast<glm::vec3*>(vertices));
+  std::copy_n(indices.data(), indices.size(), static_cast<std::uint32_t*>(triangles));
+  rtcCommitGeometry(geometry.get());
+  return geometry;
+}
+
+// A transform that flattens space has no inverse, which instances need.
+bool is_singular(const Mat4& transform) {
+  const Mat3 linear(transform);
+  const double volume = glm::length(linear[0]) * glm::length(linear[1]) * glm::length(linear[2]);
+  return !(std::abs(glm::determinant(linear)) > 1e-9 * volume);
+}
+
+}  // namespace
+
+struct Raytracer::State {
+  const Scene* scene = nullptr;
+  bool honour_masks = true;
+  Vec3 origin{0.0};                    // local origin: Embree's coordinates are world minus this
+  std::vector<std::uint32_t> objects;  // by instance id
+  std::map<std::uint32_t, GeometryHandle> mesh_geometries;
+  std::map<std::vector<std::uint32_t>, SceneHandle> prototypes;  // by the meshes and materials of their parts
+  std::vector<SceneHandle> flattened;
+  SceneHandle world;
+
+  State(const Scene& source, std::vector<std::uint32_t> chosen, const Options& options);
+  RTCScene prototype(const Object& object);
+  RTCScene flat_copy(const Object& object);
+  void add_instance(const Object& object);
+  [[nodiscard]] bool is_seen(std::uint32_t instance, std::uint32_t part, std::uint32_t triangle, float u, float v) const;
+};
+
+namespace {
+
+// What Embree hands back to the filter: it sees the first member only.
+struct Query {
+  RTCIntersectContext context{};
+  const Raytracer::State* state = nullptr;
+  double from_m = 0.0;
+  double to_m = 0.0;
+  float best_distance = std::numeric_limits<float>::infinity();
+  std::uint32_t best_object = 0;
+  std::vector<Hit> hits;
+};
+
+bool is_seen(const Query& query, const RTCFilterFunctionNArguments& candidate, std::uint32_t instance) {
+  return query.state->is_seen(instance, RTCHitN_geomID(candidate.hit, 1, 0), RTCHitN_primID(candidate.hit, 1, 0),
+                              RTCHitN_u(candidate.hit, 1, 0), RTCHitN_v(candidate.hit, 1, 0));
+}
+
+// Embree offers hits no farther than the best so far, in the order of its tree: equal distances are settled by object id here, so that the
+// answer does not depend on the tree.
+void keep_nearest(const RTCFilterFunctionNArguments* candidate) {
+  auto& query = *reinterpret_cast<Query*>(candidate->context);
+  const std::uint32_t instance = RTCHitN_instID(candidate->hit, 1, 0, 0);
+  const std::uint32_t object = query.state->objects[instance];
+  const float distance = RTCRayN_tfar(candidate->ray, 1, 0);
+  const bool worse = distance == query.best_distance && object >= query.best_object;
+  if (worse || !is_seen(query, *candidate, instance)) {
+    candidate->valid[0] = 0;
+    return;
+  }
+  query.best_distance = distance;
+  query.best_object = object;
+}
+
+// Rejecting every hit keeps the ray alive to its end.
+void keep_all(const RTCFilterFunctionNArguments* candidate) {
+  auto& query = *reinterpret_cast<Query*>(candidate->context);
+  const std::uint32_t instance = RTCHitN_instID(candidate->hit, 1, 0, 0);
+  const double distance = RTCRayN_tfar(candidate->ray, 1, 0);
+  candidate->valid[0] = 0;
+  if (distance >= query.from_m && distance <= query.to_m && is_seen(query, *candidate, instance))
+    query.hits.push_back({distance, query.state->objects[instance]});
+}
+
+void trace(Query& query, RTCFilterFunctionN filter, const Vec3& origin, const Vec3& direction, float near, float far) {
+  rtcInitIntersectContext(&query.context);
+  query.context.filter = filter;
+  const glm::vec3 start(origin - query.state->origin);
+  const glm::vec3 along(direction);
+  RTCRayHit ray{};
+  ray.ray = {start.x, start.y, start.z, near, along.x, along.y, along.z, 0.0F, far, ~0U, 0U, 0U};
+  ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  ray.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+  rtcIntersect1(query.state->world.get(), &query.context, &ray);
+}
+
+Vec3 centre_of(const Scene& scene, const std::vector<std::uint32_t>& objects) {
+  Box bounds;
+  for (const std::uint32_t object : objects) bounds.extend(scene.objects[object].bounds);
+  return bounds.empty() ? Vec3(0.0) : bounds.centre();
+}
+
+std::vector<std::uint32_t> all_objects(const Scene& scene) {
+  std::vector<std::uint32_t> objects(scene.objects.size());
+  std::iota(objects.begin(), objects.end(), 0U);
+  return objects;
+}
+
+}  // namespace
+
+Raytracer::State::State(const Scene& source, std::vector<std::uint32_t> chosen, const Options& options)
+    : scene(&source), honour_masks(options.honour_masks), origin(centre_of(source, chosen)), objects(std::move(chosen)) {
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(std::max(1, options.threads)));
+  world = new_scene();
+  for (const std::uint32_t object : objects) add_instance(scene->objects[object]);
+  rtcCommitScene(world.get());
+  Device::instance().throw_reported();
+}
+
+// Objects that show the same parts share one tree; objects that show the same mesh share its vertices.
+RTCScene Raytracer::State::prototype(const Object& object) {
+  std::vector<std::uint32_t> key;
+  for (std::uint32_t i = 0; i < object.part_count; ++i) {
+    key.push_back(scene->parts[object.first_part + i].mesh);
+    key.push_back(scene->parts[object.first_part + i].material);
+  }
+  SceneHandle& shared = prototypes[key];
+  if (shared) return shared.get();
+  shared = new_scene();
+  for (std::uint32_t i = 0; i < object.part_count; ++i) {
+    const std::uint32_t mesh = key[2 * i];
+    GeometryHandle& geometry = mesh_geometries[mesh];
+    if (!geometry) geometry = new_triangles(scene->meshes[mesh].positions, scene->meshes[mesh].indices);
+    rtcAttachGeometryByID(shared.get(), geometry.get(), i);
+  }
+  rtcCommitScene(shared.get());
+  return shared.get();
+}
+
+// The object's triangles in world axes, relative to its own transform's translation.
+RTCScene Raytracer::State::flat_copy(const Object& object) {
+  SceneHandle copy = new_scene();
+  const Mat3 linear(object.world_from_object);
+  for (std::uint32_t i = 0; i < object.part_count; ++i) {
+    const Mesh& mesh = scene->meshes[scene->parts[object.first_part + i].mesh];
+    std::vector<glm::vec3> positions;
+    positions.reserve(mesh.positions.size());
+    for (const glm::vec3& position : mesh.positions) positions.emplace_back(linear * Vec3(position));
+    rtcAttachGeometryByID(copy.get(), new_triangles(positions, mesh.indices).get(), i);
+  }
+  rtcCommitScene(copy.get());
+  flattened.push_back(std::move(copy));
+  return flattened.back().get();
+}
+
+void Raytracer::State::add_instance(const Object& object) {
+  const bool flat = is_singular(object.world_from_object);
+  Mat4 local_from_object = flat ? Mat4(1.0) : object.world_from_object;
+  local_from_object[3] = object.world_from_object[3] - Vec4(origin, 0.0);
+  const glm::mat4 transform(local_from_object);
+  const GeometryHandle instance(rtcNewGeometry(Device::instance().handle(), RTC_GEOMETRY_TYPE_INSTANCE));
+  rtcSetGeometryInstancedScene(instance.get(), flat ? flat_copy(object) : prototype(object));
+  rtcSetGeometryTransform(instance.get(), 0, RTC_FORMAT_FLOAT4X4_COLUMN_MAJOR, glm::value_ptr(transform));
+  rtcCommitGeometry(instance.get());
+  rtcAttachGeometry(world.get(), instance.get());  // ids count up from 0
+}
+
+bool Raytracer::State::is_seen(std::uint32_t instance, std::uint32_t part, std::uint32_t triangle, float u, float v) const {
+  if (!honour_masks) return true;
+  const Part& hit = scene->parts[scene->objects[objects[instance]].first_part + part];
+  return is_opaque(*scene, scene->materials[hit.material], scene->meshes[hit.mesh], triangle, u, v);
+}
+
+Raytracer::Raytracer(const Scene& scene, const Options& options) : Raytracer(scene, all_objects(scene), options) {}
+
+Raytracer::Raytracer(const Scene& scene, const std::vector<std::uint32_t>& objects, const Options& options)
+    : state_(std::make_unique<State>(scene, objects, options)) {}
+
+Raytracer::~Raytracer() = default;
+Raytracer::Raytracer(Raytracer&&) noexcept = default;
+Raytracer& Raytracer::operator=(Raytracer&&) noexcept = default;
+
+std::optional<Hit> Raytracer::nearest(const Vec3& origin, const Vec3& direction, double from_m) const {
+  Query query;
+  query.state = state_.get();
+  trace(query, keep_nearest, origin, direction, static_cast<float>(std::max(0.0, from_m)), std::numeric_limits<float>::infinity());
+  if (query.best_distance == std::numeric_limits<float>::infinity()) return std::nullopt;
+  return Hit{query.best_distance, query.best_object};
+}
+
+std::vector<Hit> Raytracer::all(const Vec3& origin, const Vec3& direction, double from_m, double to_m) const {
+  Query query;
+  query.state = state_.get();
+  query.from_m = from_m;
+  query.to_m = to_m;
+  // Embree's own interval is open and in float: ask for a little more on both sides, and let the filter decide.
+  const float near = std::nextafter(static_cast<float>(std::max(0.0, from_m)), 0.0F);
+  const float far = std::nextafter(static_cast<float>(to_m), std::numeric_limits<float>::infinity());
+  trace(query, keep_all, origin, direction, near, far);
+  std::sort(query.hits.begin(), query.hits.end(),
+            [](const Hit& a, const Hit& b) { return std::pair(a.distance_m, a.object) < std::pair(b.distance_m, b.object); });
+  return std::move(query.hits);
+}
+
+}  // namespace standin

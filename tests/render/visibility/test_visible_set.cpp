@@ -1,0 +1,131 @@
+#include <gtest/gtest.h>
+
+#include <atomic>
+
+#include "render/base/rng.h"
+#include "render/visibility/visible_set.h"
+#include "tests/render/visibility/hand_made_scene.h"
+
+namespace standin {
+namespace {
+
+using test::SceneMaker;
+
+std::vector<VisibleSet> sets_of(const Scene& scene, const std::vector<Box>& regions, std::uint64_t rays, int threads = 1,
+                                std::uint64_t seed = 1) {
+  const Raytracer raytracer(scene);
+  return sample_visible_sets(scene, raytracer, regions, VisibilityOptions{rays, seed}, threads, WorkBudget{});
+}
+
+// A wall (object 0) between the origin and a box (object 1).
+Scene wall_and_box() {
+  SceneMaker maker;
+  maker.add_box(Box{Vec3(-20, -20, -6), Vec3(20, 20, -5)});
+  maker.add_box(Box{Vec3(-1, -1, -12), Vec3(1, 1, -10)});
+  return maker.take();
+}
+
+TEST(VisibleSet, AWallHidesABoxUntilOneStandsBesideIt) {
+  const Scene scene = wall_and_box();
+  const auto sets = sets_of(scene, {Box{Vec3(-1.0), Vec3(1.0)}, Box{Vec3(30, -1, -11), Vec3(32, 1, -10)}}, 20'000);
+  EXPECT_EQ(sets[0].objects, (std::vector<std::uint32_t>{0}));
+  EXPECT_EQ(sets[1].objects, (std::vector<std::uint32_t>{0, 1}));
+  EXPECT_EQ(sets[0].missed_ray_share, 0.0);
+}
+
+TEST(VisibleSet, ObjectsThatMeetTheRegionAreVisibleWithoutARay) {
+  const Scene scene = wall_and_box();
+  const auto sets = sets_of(scene, {Box{Vec3(0, 0, -11), Vec3(0, 0, -11)}, Box{Vec3(-20, -20, -5), Vec3(20, 20, -4)}}, 0);
+  EXPECT_EQ(sets[0].objects, (std::vector<std::uint32_t>{1}));
+  EXPECT_EQ(sets[1].objects, (std::vector<std::uint32_t>{0}));  // touching counts
+  EXPECT_EQ(sets[0].missed_ray_share, 1.0);                     // no ray, no promise
+}
+
+// 4 pi / (pi 0.1^2 / 1000^2): a uniform ray in 4e8 meets the far box; aimed rays find it at once.
+TEST(VisibleSet, AimedRaysFindWhatIsFarAndSmall) {
+  SceneMaker maker;
+  maker.add_box(Box{Vec3(1000, 0, 0), Vec3(1000.1, 0.1, 0.1)});
+  maker.add_box(Box{Vec3(-50, -3, -50), Vec3(50, -2, 50)});
+  const auto sets = sets_of(maker.take(), {Box{Vec3(-1.0), Vec3(1.0)}}, 400);
+  EXPECT_EQ(sets[0].objects, (std::vector<std::uint32_t>{0, 1}));
+}
+
+Scene scattered_boxes(std::uint64_t seed, int count) {
+  Rng rng(seed);
+  SceneMaker maker;
+  for (int i = 0; i < count; ++i) {
+    const Vec3 corner(rng.uniform(-100, 100), rng.uniform(-5, 5), rng.uniform(-100, 100));
+    maker.add_box(Box{corner, corner + Vec3(rng.uniform(0.1, 3), rng.uniform(0.1, 12), rng.uniform(0.1, 3))});
+  }
+  return maker.take();
+}
+
+TEST(VisibleSet, DoesNotDependOnThreadsButOnTheSeed) {
+  const Scene scene = scattered_boxes(71, 400);
+  std::vector<Box> regions;
+  for (int i = 0; i < 12; ++i) regions.push_back(Box{Vec3(10.0 * i - 60, 0, 0), Vec3(10.0 * i - 50, 2, 10)});
+  const auto one = sets_of(scene, regions, 4000, 1);
+  const auto four = sets_of(scene, regions, 4000, 4);
+  const auto other = sets_of(scene, regions, 4000, 1, 2);
+  bool differs = false;
+  for (std::size_t i = 0; i < regions.size(); ++i) {
+    EXPECT_EQ(one[i].objects, four[i].objects);
+    EXPECT_EQ(one[i].missed_ray_share, four[i].missed_ray_share);
+    differs = differs || one[i].objects != other[i].objects;
+  }
+  EXPECT_TRUE(differs);
+}
+
+// The estimate against the truth: fresh uniform rays whose hit is outside the set.
+TEST(VisibleSet, StatesTheMissedShare) {
+  const Scene scene = scattered_boxes(72, 3000);
+  const Raytracer raytracer(scene);
+  const Box region{Vec3(-5, 0, -5), Vec3(5, 2, 5)};
+  constexpr int kRuns = 20;
+  constexpr std::uint64_t kRays = 3000;
+  double stated = 0.0;
+  double missed = 0.0;
+  Rng rng(73);
+  for (int run = 0; run < kRuns; ++run) {
+    const auto set = sample_visible_sets(scene, raytracer, {region}, {kRays, static_cast<std::uint64_t>(run)}, 1, WorkBudget{}).front();
+    stated += set.missed_ray_share;
+    int outside = 0;
+    for (int i = 0; i < 20'000; ++i) {
+      const Vec3 position = region.min + Vec3(rng.uniform(), rng.uniform(), rng.uniform()) * region.size();
+      Vec3 direction(2.0);
+      while (glm::length(direction) > 1.0) direction = Vec3(rng.uniform(-1, 1), rng.uniform(-1, 1), rng.uniform(-1, 1));
+      const auto hit = raytracer.nearest(position, glm::normalize(direction));
+      if (hit && !std::binary_search(set.objects.begin(), set.objects.end(), hit->object)) ++outside;
+    }
+    missed += outside / 20'000.0;
+  }
+  EXPECT_GT(missed / kRuns, 1e-3);
+  EXPECT_NEAR(stated / missed, 1.0, 0.2);
+}
+
+TEST(VisibleSet, StopsOnRequest) {
+  const Scene scene = wall_and_box();
+  const Raytracer raytracer(scene);
+  const std::atomic<bool> stop{true};
+  EXPECT_THROW(
+      static_cast<void>(sample_visible_sets(scene, raytracer, {Box{Vec3(0.0), Vec3(1.0)}}, VisibilityOptions{}, 1, WorkBudget(&stop))),
+      Failure);
+}
+
+TEST(ProbeOcclusion, IsZeroWithoutAnOccluder) {
+  SceneMaker maker;
+  for (int i = 0; i < 5; ++i) maker.add_box(Box{Vec3(10.0 * i, 0, -30), Vec3(10.0 * i + 1, 1, -29)});
+  const Scene scene = maker.take();
+  EXPECT_EQ(probe_occlusion(scene, Raytracer(scene), {Box{Vec3(0.0), Vec3(40, 1, 1)}}, 1), 0.0);
+  EXPECT_EQ(probe_occlusion(scene, Raytracer(scene), {}, 1), 0.0);
+  const Scene empty;
+  EXPECT_EQ(probe_occlusion(empty, Raytracer(empty), {Box{Vec3(0.0), Vec3(1.0)}}, 1), 0.0);
+}
+
+TEST(ProbeOcclusion, IsTheHiddenShareOfTriangles) {
+  const Scene scene = wall_and_box();  // 12 triangles each, one of two hidden
+  EXPECT_NEAR(probe_occlusion(scene, Raytracer(scene), {Box{Vec3(-1.0), Vec3(1.0)}}, 1), 0.5, 0.05);
+}
+
+}  // namespace
+}  // namespace standin
