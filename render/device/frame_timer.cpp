@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <ctime>
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -20,70 +21,43 @@ double clock_ms(clockid_t clock) {
 }
 
 template <typename Draw>
-Repeat measure(const Draw& draw) {
+Duration measure(const Draw& draw) {
   const double wall_ms = clock_ms(CLOCK_MONOTONIC);
   const double cpu_ms = clock_ms(CLOCK_THREAD_CPUTIME_ID);
   draw();
   return {.cpu_ms = clock_ms(CLOCK_THREAD_CPUTIME_ID) - cpu_ms, .wall_ms = clock_ms(CLOCK_MONOTONIC) - wall_ms};
 }
 
-// The host's present speed: the reference frame, timed anew whenever the last time is a quarter of a second old.
-class HostSpeed {
- public:
-  explicit HostSpeed(Context& context) : reference_(context) {
-    reference_.draw();  // compiles
-    refresh(kFirstDraws);
-  }
-
-  void refresh_if_stale() {
-    if (clock_ms(CLOCK_MONOTONIC) - measured_at_ms_ > kStale_ms) refresh(kDraws);
-  }
-  /// Forgets all reference times but the latest.
-  void begin_window() { window_ms_ = {window_ms_.back()}; }
-  [[nodiscard]] double least_of_window_ms() const { return *std::min_element(window_ms_.begin(), window_ms_.end()); }
-
- private:
-  static constexpr double kStale_ms = 250.0;
-  static constexpr int kDraws = 3;        // 6 % of the time at 5 ms each
-  static constexpr int kFirstDraws = 25;  // what a whole calibration is normalised to
-
-  void refresh(int draws) {
-    double least_ms = measure([&] { reference_.draw(); }).cpu_ms;
-    for (int i = 1; i < draws; ++i) least_ms = std::min(least_ms, measure([&] { reference_.draw(); }).cpu_ms);
-    window_ms_.push_back(least_ms);
-    measured_at_ms_ = clock_ms(CLOCK_MONOTONIC);
-  }
-
-  ReferenceFrame reference_;
-  std::vector<double> window_ms_;
-  double measured_at_ms_ = 0.0;
-};
+double least_reference_ms(ReferenceFrame& reference) {
+  constexpr int kDraws = 50;  // 0.15 s
+  reference.draw();           // compiles
+  double least_ms = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < kDraws; ++i) least_ms = std::min(least_ms, measure([&] { reference.draw(); }).cpu_ms);
+  return least_ms;
+}
 
 class CpuFrameTimer final : public FrameTimer {
  public:
-  CpuFrameTimer(Context& context, const TimingProtocol& protocol)
-      : protocol_(protocol),
-        host_(context),
-        reference_ms_(protocol.reference_ms > 0.0 ? protocol.reference_ms : host_.least_of_window_ms()) {}
+  CpuFrameTimer(Context& context, const TimingProtocol& protocol) : protocol_(protocol), reference_(context) {
+    const double now_ms = least_reference_ms(reference_);
+    if (protocol_.reference_ms == 0.0) protocol_.reference_ms = now_ms;
+  }
 
   [[nodiscard]] FrameSample time(Renderer& renderer, const View& view, const DrawList& list) override {
     for (int i = 0; i < protocol_.warm_up; ++i) renderer.draw(view, list);
-    host_.refresh_if_stale();
-    host_.begin_window();
     std::vector<Repeat> repeats;
     while (needs_another(repeats, protocol_.repeats)) {
-      host_.refresh_if_stale();
-      repeats.push_back(measure([&] { renderer.draw(view, list); }));
+      const Duration reference = measure([&] { reference_.draw(); });
+      repeats.push_back({.reference = reference, .frame = measure([&] { renderer.draw(view, list); })});
     }
-    return summarise(repeats, reference_ms_ / host_.least_of_window_ms());
+    return summarise(repeats, protocol_.reference_ms);
   }
 
-  [[nodiscard]] double reference_ms() const override { return reference_ms_; }
+  [[nodiscard]] double reference_ms() const override { return protocol_.reference_ms; }
 
  private:
   TimingProtocol protocol_;
-  HostSpeed host_;
-  double reference_ms_;
+  ReferenceFrame reference_;
 };
 
 class FakeFrameTimer final : public FrameTimer {

@@ -8,9 +8,9 @@
 namespace standin {
 namespace {
 
-constexpr int kReliefCells = 40;  // 3,200 triangles
+constexpr int kReliefCells = 32;  // 2,048 triangles
 constexpr double kReliefSide_m = 80.0;
-constexpr int kBoxesPerSide = 14;  // 196 boxes, 2,352 triangles
+constexpr int kBoxesPerSide = 8;  // 64 boxes, 768 triangles
 constexpr int kTextureSide = 256;
 constexpr std::uint64_t kSeed = 20010923;
 
@@ -86,8 +86,8 @@ void add_object(Scene& scene, std::uint32_t mesh, std::uint32_t material, const 
 void add_boxes(Scene& scene) {
   Rng rng(kSeed);
   for (int i = 0; i < kBoxesPerSide * kBoxesPerSide; ++i) {
-    const double x = 5.0 * (i % kBoxesPerSide - 0.5 * kBoxesPerSide);
-    const double z = 5.0 * (static_cast<double>(i / kBoxesPerSide) - 0.5 * kBoxesPerSide);
+    const double x = 9.0 * (i % kBoxesPerSide - 0.5 * kBoxesPerSide);
+    const double z = 9.0 * (static_cast<double>(i / kBoxesPerSide) - 0.5 * kBoxesPerSide);
     Mat4 world_from_box(1.0);
     world_from_box[0][0] = rng.uniform(0.8, 2.0);
     world_from_box[1][1] = rng.uniform(0.8, 5.0);
@@ -116,7 +116,7 @@ Scene make_reference_scene() {
 
 ReferenceFrame::ReferenceFrame(Context& context)
     : scene_(make_reference_scene()),
-      renderer_(context, scene_, Camera{}),
+      renderer_(context, scene_, Camera{.width = 256, .height = 256}),
       view_{.position = Vec3(-38.0, 9.0, 40.0), .direction = glm::normalize(Vec3(0.7, -0.25, -0.75))} {
   everything_.objects.resize(scene_.objects.size());
   std::iota(everything_.objects.begin(), everything_.objects.end(), 0U);

@@ -2,7 +2,8 @@
 // changes shows by how much.
 //
 // Built in, so that it is the same on every machine and in every version that reads the same target files: a textured relief and a field of
-// boxes, some thousand triangles and a full screen of trilinear pixels at 512 x 512, roughly the mix of a real frame.
+// boxes, 2,800 triangles and 256 x 256 mostly trilinear pixels: the mix of a real frame in 3 ms, so that it can be drawn before every
+// repeat.
 #pragma once
 
 #include "render/device/renderer.h"

@@ -1,38 +1,42 @@
 #include "render/device/sample_statistics.h"
 
 #include <algorithm>
+#include <vector>
 
 namespace standin {
 namespace {
 
-int count_contaminated(std::span<const Repeat> repeats) {
-  return static_cast<int>(std::count_if(repeats.begin(), repeats.end(), [](const Repeat& r) { return r.contaminated(); }));
+std::ptrdiff_t count_contaminated(std::span<const Repeat> repeats) {
+  return std::count_if(repeats.begin(), repeats.end(), [](const Repeat& repeat) { return repeat.contaminated(); });
 }
 
-std::vector<double> usable_times_ms(std::span<const Repeat> repeats, bool any_clean) {
-  std::vector<double> times;
-  for (const auto& repeat : repeats)
-    if (!any_clean || !repeat.contaminated()) times.push_back(repeat.cpu_ms);
-  std::sort(times.begin(), times.end());
-  return times;
+double quantile(const std::vector<double>& ascending, double fraction) {
+  return ascending[static_cast<std::size_t>(fraction * static_cast<double>(ascending.size() - 1))];
 }
 
 }  // namespace
 
 bool needs_another(std::span<const Repeat> repeats, int wanted) {
-  const int drawn = static_cast<int>(repeats.size());
-  return drawn - count_contaminated(repeats) < wanted && drawn < 2 * wanted;
+  const auto drawn = static_cast<std::ptrdiff_t>(repeats.size());
+  return drawn - count_contaminated(repeats) < wanted && drawn < 2 * std::ptrdiff_t{wanted};
 }
 
-FrameSample summarise(std::span<const Repeat> repeats, double normalised_per_raw) {
-  const int contaminated = count_contaminated(repeats);
-  const auto times = usable_times_ms(repeats, contaminated < static_cast<int>(repeats.size()));
-  const double least_ms = times.front();
-  const double median_ms = times[times.size() / 2];
-  return {.milliseconds = least_ms * normalised_per_raw,
-          .raw_milliseconds = least_ms,
-          .spread = least_ms > 0.0 ? (median_ms - least_ms) / least_ms : 0.0,
-          .rejected = contaminated};
+FrameSample summarise(std::span<const Repeat> repeats, double reference_ms) {
+  const auto contaminated = count_contaminated(repeats);
+  const bool any_clean = contaminated < static_cast<std::ptrdiff_t>(repeats.size());
+  std::vector<double> ratios;
+  std::vector<double> raw_ms;
+  for (const auto& repeat : repeats) {
+    if (any_clean && repeat.contaminated()) continue;
+    ratios.push_back(repeat.frame.cpu_ms / repeat.reference.cpu_ms);
+    raw_ms.push_back(repeat.frame.cpu_ms);
+  }
+  std::sort(ratios.begin(), ratios.end());
+  const double median = quantile(ratios, 0.5);
+  return {.milliseconds = reference_ms * median,
+          .raw_milliseconds = *std::min_element(raw_ms.begin(), raw_ms.end()),
+          .spread = median > 0.0 ? (quantile(ratios, 0.75) - quantile(ratios, 0.25)) / median : 0.0,
+          .rejected = static_cast<int>(contaminated)};
 }
 
 }  // namespace standin

@@ -2,23 +2,29 @@
 #pragma once
 
 #include <span>
-#include <vector>
 
 #include "render/device/frame_timer.h"
 
 namespace standin {
 
-/// One draw, timed by two clocks.
-struct Repeat {
+/// One draw by two clocks: CPU time of the thread, and wall time.
+struct Duration {
   double cpu_ms = 0.0;
   double wall_ms = 0.0;
-  /// The thread was off the processor for part of the draw.
+  /// The thread was off the processor for part of it.
   [[nodiscard]] bool contaminated() const { return wall_ms > 1.1 * cpu_ms; }
+};
+
+/// A frame and the reference frame drawn just before it.
+struct Repeat {
+  Duration reference;
+  Duration frame;
+  [[nodiscard]] bool contaminated() const { return reference.contaminated() || frame.contaminated(); }
 };
 
 /// Whether to draw once more: until `wanted` clean repeats, with at most twice as many draws.
 [[nodiscard]] bool needs_another(std::span<const Repeat> repeats, int wanted);
-/// Of the clean repeats; of all where none is clean (CPU time is still close then). `repeats` must not be empty.
-[[nodiscard]] FrameSample summarise(std::span<const Repeat> repeats, double normalised_per_raw);
+/// Of the clean repeats; of all where none is clean (CPU times are still close then). `repeats` must not be empty.
+[[nodiscard]] FrameSample summarise(std::span<const Repeat> repeats, double reference_ms);
 
 }  // namespace standin
