@@ -15,6 +15,8 @@
 
 namespace standin {
 
+class TexturePyramids;  // texture_pyramid.h
+
 struct BakeQuality {
   double alpha_scale = 1.0;  // parallax limit in units of the centre pixel's angle
   double texel_scale = 1.0;  // texel size in units of the centre pixel, at the nearest point of the view cell; > 0
@@ -42,7 +44,13 @@ struct ImpostorPlan {
 /// The objects' bounds are taken as one box in the frame of the view cell. Never throws for geometry: says why not.
 [[nodiscard]] ImpostorPlan plan_impostor(const Box& object_bounds, const ViewCell& cell, const Camera& camera, const BakeQuality& quality);
 
-/// The same question in O(1), for ranking: estimated number of layers and texture size. `layers` = infinity: impossible.
+/// The same where the objects' vertices are known: viewpoint as above, but texels and layers fit the points themselves, which rotated
+/// boxes enclose only loosely. bake_layered plans this way.
+[[nodiscard]] ImpostorPlan plan_impostor(const Box& object_bounds, std::span<const Vec3> points, const ViewCell& cell, const Camera& camera,
+                                         const BakeQuality& quality);
+
+/// The same question in O(1), for ranking: estimated number of layers and texture size. `layers` = infinity: impossible
+/// or more than the quality allows.
 struct ImpostorSketch {
   double layers = 0.0;
   double width_texels = 0.0;
@@ -55,5 +63,8 @@ struct ImpostorSketch {
 /// Throws Failure(kImpostorImpossible) where plan_impostor says so. May return an impostor without quads (nothing visible).
 [[nodiscard]] Impostor bake_layered(const Scene& scene, const BakeRequest& request, const Camera& camera, const BakeQuality& quality,
                                     const WorkBudget& budget = {});
+/// The same with the scene's filtered textures, which many bakes, on any threads, share.
+[[nodiscard]] Impostor bake_layered(const Scene& scene, const TexturePyramids& textures, const BakeRequest& request, const Camera& camera,
+                                    const BakeQuality& quality, const WorkBudget& budget = {});
 
 }  // namespace standin

@@ -1,0 +1,183 @@
+// The GLB writer: every impostor a node at its reference viewpoint, with one primitive per atlas page that it uses.
+//
+// The binary chunk holds all positions, then all texture coordinates, all indices and the pages as PNG, each in a buffer view of its own.
+#include "render/impostor/impostor_glb.h"
+
+#include <algorithm>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string_view>
+
+#include "render/image/image_io.h"
+#include "render/impostor/atlas.h"
+
+namespace standin {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// Names of glTF 2.0.
+constexpr int kFloat = 5126, kUnsignedShort = 5123, kUnsignedInt = 5125, kArrayBuffer = 34962, kElementArrayBuffer = 34963;
+constexpr int kNearest = 9728, kClampToEdge = 33071;
+enum BufferView : int { kPositions, kUvs, kIndices, kFirstImage };
+
+constexpr std::uint64_t kVerticesPerQuad = 4, kIndicesPerQuad = 6, kBytesPerVertex = 3 * sizeof(float) + 2 * sizeof(float);
+constexpr std::uint64_t kMostShortQuads = 0xFFFF / kVerticesPerQuad;  // 65535 itself is kept free: it restarts primitives
+
+std::uint64_t bytes_per_index(std::uint64_t quads) {
+  return quads <= kMostShortQuads ? 2 : 4;
+}
+
+template <class Value>
+void append(std::string& bytes, const Value& value) {
+  bytes.append(reinterpret_cast<const char*>(&value), sizeof(Value));  // glTF is little-endian, as every target of ours is
+}
+
+void pad(std::string& bytes, char filler) {
+  while (bytes.size() % 4 != 0) bytes.push_back(filler);
+}
+
+/// The binary chunk's sections and the JSON arrays that refer to them, in the making.
+struct Document {
+  std::string positions, uvs, indices;
+  Json accessors = Json::array(), meshes = Json::array(), nodes = Json::array();
+};
+
+int add_accessor(Document& document, BufferView view, std::size_t offset, int component, std::uint64_t count, const char* type) {
+  document.accessors.push_back(
+      {{"bufferView", view}, {"byteOffset", offset}, {"componentType", component}, {"count", count}, {"type", type}});
+  return static_cast<int>(document.accessors.size()) - 1;
+}
+
+/// Corners from the upper left, counter-clockwise as the viewer sees them.
+void append_quad(const Impostor& impostor, const Quad& quad, const AtlasSlot& slot, const Texture& page, Document& document, Box& bounds) {
+  for (const auto& [right, down] : {std::pair{0U, 0U}, {0U, 1U}, {1U, 1U}, {1U, 0U}}) {
+    const std::uint32_t dx = right * quad.width, dy = down * quad.height;
+    const Vec3 offset =
+        layer_point(impostor.frame, impostor.layers[quad.layer].distance_m, quad.x + dx, quad.y + dy) - impostor.frame.reference_viewpoint;
+    const glm::vec3 position(offset);
+    bounds.extend(Vec3(position));
+    for (int axis = 0; axis < 3; ++axis) append(document.positions, position[axis]);
+    append(document.uvs, static_cast<float>(slot.x + dx) / static_cast<float>(page.width));
+    append(document.uvs, static_cast<float>(slot.y + dy) / static_cast<float>(page.height));
+  }
+}
+
+void append_indices(std::uint64_t quads, std::uint64_t index_bytes, std::string& indices) {
+  for (std::uint64_t quad = 0; quad < quads; ++quad)
+    for (const std::uint64_t corner : {0, 1, 2, 0, 2, 3}) {
+      const std::uint64_t index = kVerticesPerQuad * quad + corner;
+      if (index_bytes == 2)
+        append(indices, static_cast<std::uint16_t>(index));
+      else
+        append(indices, static_cast<std::uint32_t>(index));
+    }
+}
+
+/// The quads of one impostor that lie on one page.
+Json add_primitive(const Impostor& impostor, const std::vector<AtlasSlot>& slots, const std::vector<std::uint32_t>& quads,
+                   const Texture& page, Document& document) {
+  const std::uint64_t index_bytes = bytes_per_index(impostor.quads.size()), vertices = kVerticesPerQuad * quads.size();
+  const int positions = add_accessor(document, kPositions, document.positions.size(), kFloat, vertices, "VEC3");
+  const int uvs = add_accessor(document, kUvs, document.uvs.size(), kFloat, vertices, "VEC2");
+  const int indices = add_accessor(document, kIndices, document.indices.size(), index_bytes == 2 ? kUnsignedShort : kUnsignedInt,
+                                   kIndicesPerQuad * quads.size(), "SCALAR");
+  Box bounds;
+  for (const std::uint32_t quad : quads) append_quad(impostor, impostor.quads[quad], slots[quad], page, document, bounds);
+  append_indices(quads.size(), index_bytes, document.indices);
+  document.accessors[static_cast<std::size_t>(positions)]["min"] = {bounds.min.x, bounds.min.y, bounds.min.z};
+  document.accessors[static_cast<std::size_t>(positions)]["max"] = {bounds.max.x, bounds.max.y, bounds.max.z};
+  return {{"attributes", {{"POSITION", positions}, {"TEXCOORD_0", uvs}}}, {"indices", indices}, {"material", slots[quads.front()].page}};
+}
+
+void add_node(const ImpostorSet& set, std::size_t id, Document& document) {
+  const Impostor& impostor = set.impostors[id];
+  const Vec3& viewpoint = impostor.frame.reference_viewpoint;
+  const std::string name = "imp_" + std::to_string(id);
+  Json node = {{"name", name}, {"translation", {viewpoint.x, viewpoint.y, viewpoint.z}}};
+  std::map<std::uint32_t, std::vector<std::uint32_t>> quads_of_page;
+  for (std::uint32_t quad = 0; quad < impostor.quads.size(); ++quad) quads_of_page[set.slots[id][quad].page].push_back(quad);
+  if (!quads_of_page.empty()) {
+    Json primitives = Json::array();
+    for (const auto& [page, quads] : quads_of_page)
+      primitives.push_back(add_primitive(impostor, set.slots[id], quads, set.pages[page], document));
+    node["mesh"] = document.meshes.size();
+    document.meshes.push_back({{"name", name}, {"primitives", std::move(primitives)}});
+  }
+  document.nodes.push_back(std::move(node));
+}
+
+Json material_of(std::size_t page) {
+  return {{"name", "atlas_" + std::to_string(page)},
+          {"pbrMetallicRoughness", {{"baseColorTexture", {{"index", page}}}, {"metallicFactor", 0.0}, {"roughnessFactor", 1.0}}},
+          {"alphaMode", "MASK"},
+          {"alphaCutoff", 0.5},
+          {"doubleSided", true},
+          {"extensions", {{"KHR_materials_unlit", Json::object()}}}};
+}
+
+/// Appends a section to the binary chunk and describes it.
+void add_view(Json& views, std::string& binary, std::string_view bytes, int stride, int target) {
+  pad(binary, '\0');
+  Json view = {{"buffer", 0}, {"byteOffset", binary.size()}, {"byteLength", bytes.size()}};
+  if (stride != 0) view["byteStride"] = stride;
+  if (target != 0) view["target"] = target;
+  views.push_back(std::move(view));
+  binary.append(bytes);
+}
+
+/// The sections that depend on there being any quads at all: glTF forbids empty arrays.
+void add_contents(const ImpostorSet& set, Document& document, Json& gltf, std::string& binary) {
+  Json views = Json::array();
+  add_view(views, binary, document.positions, 3 * sizeof(float), kArrayBuffer);
+  add_view(views, binary, document.uvs, 2 * sizeof(float), kArrayBuffer);
+  add_view(views, binary, document.indices, 0, kElementArrayBuffer);
+  for (std::size_t page = 0; page < set.pages.size(); ++page) {
+    add_view(views, binary, encode_png(set.pages[page]), 0, 0);
+    gltf["images"].push_back({{"name", set.pages[page].name}, {"mimeType", "image/png"}, {"bufferView", kFirstImage + page}});
+    gltf["textures"].push_back({{"sampler", 0}, {"source", page}});
+    gltf["materials"].push_back(material_of(page));
+  }
+  pad(binary, '\0');
+  gltf["extensionsUsed"] = {"KHR_materials_unlit"};
+  gltf["samplers"] = Json::array({{{"magFilter", kNearest}, {"minFilter", kNearest}, {"wrapS", kClampToEdge}, {"wrapT", kClampToEdge}}});
+  gltf["meshes"] = std::move(document.meshes);
+  gltf["accessors"] = std::move(document.accessors);
+  gltf["bufferViews"] = std::move(views);
+  gltf["buffers"] = Json::array({{{"byteLength", binary.size()}}});
+}
+
+std::string glb_of(std::string json, const std::string& binary) {
+  pad(json, ' ');
+  const auto size = [](const std::string& chunk) { return static_cast<std::uint32_t>(chunk.size()); };
+  std::string glb = "glTF";
+  append(glb, std::uint32_t{2});
+  append(glb, 12 + 8 + size(json) + (binary.empty() ? 0 : 8 + size(binary)));
+  append(glb, size(json));
+  glb += "JSON" + json;
+  if (binary.empty()) return glb;
+  append(glb, size(binary));
+  glb.append("BIN\0", 4);
+  return glb + binary;
+}
+
+}  // namespace
+
+std::string encode_impostor_glb(const ImpostorSet& set) {
+  Document document;
+  for (std::size_t id = 0; id < set.impostors.size(); ++id) add_node(set, id, document);
+  Json gltf = {{"asset", {{"version", "2.0"}, {"generator", "Standin"}}}, {"scene", 0}};
+  gltf["scenes"] = Json::array({Json::object()});
+  for (std::size_t id = 0; id < set.impostors.size(); ++id) gltf["scenes"][0]["nodes"].push_back(id);
+  if (!document.nodes.empty()) gltf["nodes"] = document.nodes;
+  std::string binary;
+  if (!document.positions.empty()) add_contents(set, document, gltf, binary);
+  return glb_of(gltf.dump(), binary);
+}
+
+std::uint64_t geometry_bytes(const Impostor& impostor) {
+  const std::uint64_t quads = impostor.quads.size();
+  return quads * (kVerticesPerQuad * kBytesPerVertex + kIndicesPerQuad * bytes_per_index(quads));
+}
+
+}  // namespace standin

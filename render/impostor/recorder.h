@@ -1,0 +1,30 @@
+// Recording: which texels of which layer a set of objects covers, and in what colour (thesis 3.3.2).
+//
+// One pass over the triangles on the CPU. Each triangle is cut at the borders of the layers it reaches, and every texel whose closed square
+// meets such a piece is drawn: with layers one texel of parallax apart this leaves no gap between them (math.md 1.7). In one texel of one
+// layer a surface that holds the texel's centre wins over one that only touches the texel, and of two such the nearer; so a layer looks as
+// if drawn by a graphics device, plus a rim.
+//
+// Masked surfaces are drawn where any part of the texel may be opaque. Both faces of a surface are recorded even where a device would cull
+// one: rays hit both, and what is hidden behind a front face is culled afterwards anyway.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "render/base/work.h"
+#include "render/impostor/impostor.h"
+#include "render/impostor/layer_image.h"
+#include "render/impostor/texture_pyramid.h"
+
+namespace standin {
+
+enum class Coverage { kClosed, kCentre };  // centre sampling is for tests: it leaves gaps
+
+/// One image per layer, near to far. `layers` must not be empty; their ranges adjoin, and what lies before the first or beyond the last is
+/// taken into that one. Every vertex must lie in front of the reference viewpoint.
+[[nodiscard]] std::vector<LayerImage> record_layers(const Scene& scene, const TexturePyramids& textures,
+                                                    std::span<const std::uint32_t> objects, const ImpostorFrame& frame,
+                                                    std::span<const Layer> layers, Coverage coverage, const WorkBudget& budget = {});
+
+}  // namespace standin

@@ -1,0 +1,83 @@
+// A texture filtered to every coarseness, for colours and for alpha masks.
+//
+// Each level holds the mean colour of the texels below that count (all of them for opaque materials, those that pass the mask for masked
+// ones) and the share of them as weight, rounded up: a weight is zero only where no texel passes at all. So one pyramid gives trilinear
+// colours that no cut-out background bleeds into, and a mask test over a whole footprint that misses nothing.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include "render/scene/scene.h"
+
+namespace standin {
+
+class TexturePyramid {
+ public:
+  /// `texture` must outlive this. Texels of alpha below `least_alpha` (0..256) do not count; 0: all do.
+  TexturePyramid(const Texture& texture, int least_alpha);
+
+  struct Sample {
+    glm::vec3 colour{0.0F};  // 0..1
+    float weight = 0.0F;     // share of texels that pass the mask, 0: none
+  };
+  /// Trilinear, repeating. `level` 0 is the texture itself; where nothing passes at that level, the next coarser one that has something.
+  [[nodiscard]] Sample sample(const Vec2& uv, double level) const;
+  /// Whether the texel at `uv` passes the mask.
+  [[nodiscard]] bool passes(const Vec2& uv) const;
+  /// Whether any texel that meets the box passes the mask; may say yes for one just outside.
+  [[nodiscard]] bool any_passes(const Vec2& uv_min, const Vec2& uv_max) const;
+
+  [[nodiscard]] int width() const { return texture_.width; }
+  [[nodiscard]] int height() const { return texture_.height; }
+  [[nodiscard]] int coarsest_level() const { return static_cast<int>(levels_.size()); }
+
+ private:
+  struct Level {
+    int width = 0;
+    int height = 0;
+    std::vector<std::uint8_t> rgbw;
+  };
+  struct Texel {
+    glm::vec3 colour;
+    float weight;
+  };
+  [[nodiscard]] int width_of(int level) const { return level == 0 ? texture_.width : levels_[static_cast<std::size_t>(level) - 1].width; }
+  [[nodiscard]] int height_of(int level) const {
+    return level == 0 ? texture_.height : levels_[static_cast<std::size_t>(level) - 1].height;
+  }
+  [[nodiscard]] Texel fetch(int level, int x, int y) const;
+  [[nodiscard]] Texel bilinear(int level, const Vec2& uv) const;
+  [[nodiscard]] Level half(int level) const;
+  [[nodiscard]] bool any_in(int level, int x0, int x1, int y0, int y1) const;
+
+  const Texture& texture_;
+  int least_alpha_ = 0;
+  std::vector<Level> levels_;  // coarser than the texture itself; texel x of level k covers texels [x 2^k, (x+1) 2^k)
+};
+
+/// The pyramids of a scene's materials, each built when first asked for. Safe to share between threads.
+class TexturePyramids {
+ public:
+  explicit TexturePyramids(const Scene& scene);
+  /// nullptr where the material has no texture.
+  [[nodiscard]] const TexturePyramid* of_material(std::uint32_t material) const;
+
+ private:
+  struct Slot {
+    int texture = -1;
+    int least_alpha = 0;
+    std::once_flag built;
+    std::unique_ptr<TexturePyramid> pyramid;
+  };
+  const Scene& scene_;
+  std::vector<std::unique_ptr<Slot>> slots_;
+  std::vector<Slot*> slot_of_material_;
+};
+
+/// Least texture alpha (0..256) that passes the material's mask; 0 where the material has none.
+[[nodiscard]] int least_passing_alpha(const Material& material);
+
+}  // namespace standin
