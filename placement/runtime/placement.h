@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "placement/view_space/cell_locator.h"
 #include "placement/view_space/view_space.h"
 #include "render/impostor/impostor.h"
 #include "render/view/direction_interval.h"
@@ -36,7 +37,7 @@ struct PlacementImpostor {
   ImpostorFrame frame;
   std::vector<Layer> layers;
   std::uint32_t quads = 0;
-  std::uint64_t texels = 0;              // of all quads, without gutters
+  std::uint64_t texels = 0;  // of all quads, without gutters
   std::uint64_t texture_bytes = 0;
   std::uint64_t geometry_bytes = 0;
   double time_bound_ms = 0.0;  // at the nearest point of its view cell
@@ -58,21 +59,26 @@ struct Lookup {
   std::optional<std::uint32_t> cpv;   // none: originals only
 };
 
-/// Built once per placement; find() allocates nothing. Intervals and cells are half-open at the upper end, the last one closed.
+/// Built once per placement, which must outlive it; find() allocates nothing and may be called from several threads. Intervals and cells
+/// are half-open at the upper end, the last one closed (cell_locator.h, direction_interval.h).
 class PlacementIndex {
  public:
+  /// Throws Failure(kFileBroken) naming the entry when cells, intervals or CPVs are out of order or refer to nothing.
   explicit PlacementIndex(const Placement& placement);
+  /// `direction` must not be zero; its length does not matter.
   [[nodiscard]] Lookup find(const Vec3& position, const Vec3& direction) const;
 
  private:
   const Placement* placement_;
+  CellLocator cells_;
+  std::vector<int> interval_levels_;       // those in use, finest first
   std::vector<std::uint32_t> cpv_offset_;  // per cell + 1
 };
 
 /// Objects to draw as originals and impostors to draw, for a lookup's answer. `object_count` of the scene.
 struct ViewContent {
-  std::vector<std::uint32_t> objects;
-  std::vector<std::uint32_t> impostors;
+  std::vector<std::uint32_t> objects;    // ascending
+  std::vector<std::uint32_t> impostors;  // ascending
 };
 [[nodiscard]] ViewContent content_of(const Placement& placement, const Lookup& lookup, std::uint32_t object_count);
 

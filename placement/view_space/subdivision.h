@@ -1,16 +1,18 @@
 // Problem view space approximation (thesis 5.5): the regions (3D cell x direction interval) whose time bound exceeds the budget.
 //
-// A region's bound is kept per object: the object's cost bound over the leaf (nearest distance between the cell's box and the object's
-// bounds), counted only where the leaf *and all its ancestors* may see it (each is valid for all views inside; math.md 4). Of the two
-// linear forms (sum of pixel costs, or a constant cap and no pixel costs) the smaller is chosen per region, before selection, and stays.
-// Hot leaves are halved further in position, each sub-leaf a cell of its own.
+// Every leaf cube of the view space gets a quadtree search over directions; a node whose bound (region_bound.h) is within the budget is
+// pruned with everything below it. We start at the leaf level, not at the root as the paper does: visible sets belong to leaves, and what
+// the root could prune costs less than its sets. Hot leaves are halved further in position, the hottest first, each sub-leaf a cell of its
+// own: demand is bound minus budget, so a tighter bound saves many times its cost in impostor memory.
 #pragma once
 
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "estimation/time_model.h"
+#include "placement/view_space/region_bound.h"
 #include "placement/view_space/view_space.h"
 #include "render/base/work.h"
 #include "render/view/direction_interval.h"
@@ -22,13 +24,9 @@ namespace standin {
 struct Cell {
   CellKey key;
   Box box;
-  std::int32_t visible_set = -1;  // index into Subdivision::visible_sets; -1: everything may be visible
-};
-
-/// One object's share of a region's bound, in the region's linear form.
-struct RegionTerm {
-  std::uint32_t object = 0;
-  double predicted_ms = 0.0;
+  std::int32_t visible_set = -1;     // index into Subdivision::visible_sets; -1: everything may be visible
+  double worst_predicted_ms = 0.0;   // greatest bound of its leaf regions, in budget or not
+  DirectionInterval worst_interval;  // where that is
 };
 
 /// Conservative problem view: a leaf region over budget.
@@ -48,21 +46,28 @@ struct Subdivision {
   std::vector<Cpv> cpvs;                     // sorted by (cell, interval)
   std::vector<RegionTerm> terms;             // per CPV, by hierarchy rank of the object
   std::vector<std::vector<std::uint32_t>> visible_sets;
-  double worst_predicted_ms = 0.0;  // over all leaf regions, in budget or not
+  double worst_predicted_ms = 0.0;    // over all leaf regions, in budget or not
+  std::vector<std::string> left_out;  // e.g. hot cells not halved, since max_terms would be passed
+
+  [[nodiscard]] std::span<const RegionTerm> terms_of(const Cpv& cpv) const {
+    return std::span(terms).subspan(cpv.first_term, cpv.term_count);
+  }
 };
 
 struct SubdivisionOptions {
   int threads = 1;
-  double predicted_budget_ms = 0.0;  // a region is a CPV when its predicted bound exceeds this
+  double predicted_budget_ms = 0.0;      // a region is a CPV when its predicted bound exceeds this
+  std::uint64_t max_terms = 30'000'000;  // 16 bytes each; hot cells are no longer halved beyond it
 };
 
-/// Visible sets belong to cubes of the leaf level: `visible_sets[i]` to `visible_cells[i]` (sorted); empty: no visibility. A coarser cell
-/// uses the union.
+/// Visible sets belong to cubes of the leaf level: `visible_sets[i]` to `visible_cells[i]` (sorted); empty: no visibility. Finer cells
+/// inherit their leaf's.
 struct Visibility {
   std::vector<CellKey> cells;
   std::vector<std::vector<std::uint32_t>> sets;
 };
 
+/// The same result for any number of threads.
 [[nodiscard]] Subdivision subdivide(const Scene& scene, const std::vector<std::uint32_t>& hierarchy_rank, const ViewSpace& view_space,
                                     const Visibility& visibility, const TimeModel& model, const Camera& camera,
                                     const ViewSpaceOptions& options, const SubdivisionOptions& subdivision_options,

@@ -1,0 +1,105 @@
+#include "placement/runtime/placement.h"
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+#include "render/base/error.h"
+
+namespace standin {
+namespace {
+
+void require(bool holds, const std::string& what, std::size_t number, const std::string& fault) {
+  if (!holds) throw Failure(ErrorWord::kFileBroken, "placement: " + what + " " + std::to_string(number) + " " + fault);
+}
+
+CellLocator locate_cells(const Placement& placement) {
+  std::vector<CellKey> keys;
+  std::vector<Box> boxes;
+  for (const PlacementCell& cell : placement.cells) {
+    keys.push_back(cell.key);
+    boxes.push_back(cell.box);
+  }
+  return {{placement.root_min, placement.root_side_m}, std::move(keys), std::move(boxes)};
+}
+
+void check_cpvs(const Placement& placement) {
+  std::pair<std::uint32_t, std::uint32_t> previous{};
+  for (std::size_t i = 0; i < placement.cpvs.size(); ++i) {
+    const PlacementCpv& cpv = placement.cpvs[i];
+    require(cpv.cell < placement.cells.size(), "problem view", i, "names cell " + std::to_string(cpv.cell) + ", which does not exist");
+    require(cpv.interval < placement.intervals.size(), "problem view", i,
+            "names interval " + std::to_string(cpv.interval) + ", which does not exist");
+    for (const std::uint32_t impostor : cpv.impostors)
+      require(impostor < placement.impostors.size(), "problem view", i,
+              "names impostor " + std::to_string(impostor) + ", which does not exist");
+    const std::pair key{cpv.cell, cpv.interval};
+    require(i == 0 || previous < key, "problem view", i, "does not follow its predecessor in (cell, interval)");
+    previous = key;
+  }
+}
+
+std::vector<std::uint32_t> without(const std::vector<std::uint32_t>& objects, const std::vector<std::uint32_t>& replaced) {
+  std::vector<std::uint32_t> rest;
+  std::set_difference(objects.begin(), objects.end(), replaced.begin(), replaced.end(), std::back_inserter(rest));
+  return rest;
+}
+
+}  // namespace
+
+PlacementIndex::PlacementIndex(const Placement& placement) : placement_(&placement), cells_(locate_cells(placement)) {
+  for (std::size_t i = 0; i < placement.intervals.size(); ++i) {
+    require(i == 0 || placement.intervals[i - 1] < placement.intervals[i], "interval", i, "does not follow its predecessor");
+    interval_levels_.push_back(placement.intervals[i].level);
+  }
+  std::sort(interval_levels_.rbegin(), interval_levels_.rend());
+  interval_levels_.erase(std::unique(interval_levels_.begin(), interval_levels_.end()), interval_levels_.end());
+  check_cpvs(placement);
+  cpv_offset_.assign(placement.cells.size() + 1, 0);
+  for (const PlacementCpv& cpv : placement.cpvs) ++cpv_offset_[cpv.cell + 1];
+  std::partial_sum(cpv_offset_.begin(), cpv_offset_.end(), cpv_offset_.begin());
+}
+
+Lookup PlacementIndex::find(const Vec3& position, const Vec3& direction) const {
+  Lookup lookup;
+  lookup.cell = cells_.find(position);
+  if (!lookup.cell) return lookup;
+  const auto first = placement_->cpvs.begin() + cpv_offset_[*lookup.cell];
+  const auto last = placement_->cpvs.begin() + cpv_offset_[*lookup.cell + 1];
+  if (first == last) return lookup;
+  const auto& intervals = placement_->intervals;
+  for (const int level : interval_levels_) {
+    const DirectionInterval wanted = interval_of(direction, level);
+    const auto interval = std::lower_bound(intervals.begin(), intervals.end(), wanted);
+    if (interval == intervals.end() || *interval != wanted) continue;
+    const auto id = static_cast<std::uint32_t>(interval - intervals.begin());
+    const auto cpv = std::lower_bound(first, last, id, [](const PlacementCpv& c, std::uint32_t i) { return c.interval < i; });
+    if (cpv == last || cpv->interval != id) continue;
+    lookup.cpv = static_cast<std::uint32_t>(cpv - placement_->cpvs.begin());
+    return lookup;
+  }
+  return lookup;
+}
+
+ViewContent content_of(const Placement& placement, const Lookup& lookup, std::uint32_t object_count) {
+  ViewContent content;
+  const std::int32_t visible_set = lookup.cell ? placement.cells[*lookup.cell].visible_set : -1;
+  if (visible_set >= 0) {
+    content.objects = placement.visible_sets[static_cast<std::size_t>(visible_set)];
+  } else {
+    content.objects.resize(object_count);
+    std::iota(content.objects.begin(), content.objects.end(), 0U);
+  }
+  if (!lookup.cpv) return content;
+  content.impostors = placement.cpvs[*lookup.cpv].impostors;
+  std::vector<std::uint32_t> replaced;
+  for (const std::uint32_t impostor : content.impostors) {
+    const auto& objects = placement.impostors[impostor].objects;
+    replaced.insert(replaced.end(), objects.begin(), objects.end());
+  }
+  std::sort(replaced.begin(), replaced.end());
+  content.objects = without(content.objects, replaced);
+  return content;
+}
+
+}  // namespace standin

@@ -1,0 +1,104 @@
+#include "placement/view_space/region_bound.h"
+
+#include <algorithm>
+#include <string>
+
+#include "render/base/error.h"
+
+namespace standin {
+namespace {
+
+// 393,216 cones; finer intervals hardly tighten a bound, whose cone is dominated by the field of view.
+constexpr int kDeepestLevel = 8;
+
+// Nodes of all levels before `level` on all faces: 6 (1 + 4 + .. + 4^(level-1)).
+std::size_t nodes_above(int level) {
+  return kFaceCount * (((std::size_t{1} << (2 * level)) - 1) / 3);
+}
+
+std::size_t node_number(const DirectionInterval& interval) {
+  const auto side = std::size_t{1} << interval.level;
+  return nodes_above(interval.level) + (static_cast<std::size_t>(interval.face) * side + static_cast<std::size_t>(interval.i)) * side +
+         static_cast<std::size_t>(interval.j);
+}
+
+}  // namespace
+
+DirectionTree::DirectionTree(const Camera& camera, int leaf_level) : leaf_level_(leaf_level) {
+  if (leaf_level < 0 || leaf_level > kDeepestLevel)
+    throw Failure(ErrorWord::kBadUsage, "direction intervals: level " + std::to_string(leaf_level) + " is not in 0.." +
+                                            std::to_string(kDeepestLevel) + " (90 to 0.35 degrees)");
+  cones_.reserve(nodes_above(leaf_level + 1));
+  for (int level = 0; level <= leaf_level; ++level)
+    for (int face = 0; face < kFaceCount; ++face)
+      for (int i = 0; i < 1 << level; ++i)
+        for (int j = 0; j < 1 << level; ++j) cones_.push_back(enclosing_cone({static_cast<Face>(face), level, i, j}, camera));
+}
+
+const DirectionCone& DirectionTree::cone(const DirectionInterval& interval) const {
+  return cones_[node_number(interval)];
+}
+
+RegionEstimator::RegionEstimator(const Scene& scene, const std::vector<std::uint32_t>& hierarchy_rank, const TimeModel& model,
+                                 const Camera& camera, double interval_deg)
+    : scene_(&scene),
+      rank_(&hierarchy_rank),
+      model_(&model),
+      features_(scene, camera),
+      directions_(camera, level_for_width(interval_deg)) {}
+
+CellCosts RegionEstimator::cell_costs(std::vector<Box> chain, std::span<const std::uint32_t> visible) const {
+  CellCosts cell;
+  cell.chain = std::move(chain);
+  cell.objects.reserve(visible.size());
+  for (const std::uint32_t object : visible) {
+    const Box& bounds = scene_->objects[object].bounds;
+    if (bounds.empty()) continue;
+    const Cost cost = model_->cost(features_.bound(object, distance(cell.chain.front(), bounds)));
+    if (cost.fixed_ms > 0.0 || cost.pixel_ms > 0.0) cell.objects.push_back({object, bounds, cost});
+  }
+  std::sort(cell.objects.begin(), cell.objects.end(),
+            [this](const ObjectCost& a, const ObjectCost& b) { return (*rank_)[a.object] < (*rank_)[b.object]; });
+  return cell;
+}
+
+RegionSums RegionEstimator::empty_frame() const {
+  RegionSums sums;
+  sums.add(model_->cost(frame_features()));
+  sums.capped_ms += model_->pixel_cap_ms;
+  return sums;
+}
+
+bool RegionEstimator::may_see(const DirectionInterval& interval, const CellCosts& cell, const Box& bounds) const {
+  const DirectionCone& cone = directions_.cone(interval);
+  return std::all_of(cell.chain.begin(), cell.chain.end(), [&](const Box& box) { return standin::may_see(cone, box, bounds); });
+}
+
+RegionBound RegionEstimator::region_bound(const CellCosts& cell, const DirectionInterval& interval) const {
+  const auto seen_by_all = [&](const Box& bounds) {
+    for (DirectionInterval node = interval; node.level >= 0; node = node.parent())
+      if (!may_see(node, cell, bounds)) return false;
+    return true;
+  };
+  std::vector<std::uint32_t> seen;
+  for (std::uint32_t i = 0; i < cell.objects.size(); ++i)
+    if (seen_by_all(cell.objects[i].bounds)) seen.push_back(i);
+  return bound_of(cell, seen);
+}
+
+RegionBound RegionEstimator::bound_of(const CellCosts& cell, std::span<const std::uint32_t> seen) const {
+  RegionSums sums = empty_frame();
+  for (const std::uint32_t i : seen) sums.add(cell.objects[i].cost);
+  RegionBound bound;
+  bound.pixels_capped = sums.pixels_capped();
+  bound.constant_ms = bound.pixels_capped ? empty_frame().capped_ms : empty_frame().with_pixels_ms;
+  bound.predicted_ms = sums.predicted_ms();
+  for (const std::uint32_t i : seen) {
+    const Cost& cost = cell.objects[i].cost;
+    const double predicted_ms = bound.pixels_capped ? cost.fixed_ms : cost.fixed_ms + cost.pixel_ms;
+    if (predicted_ms > 0.0) bound.terms.push_back({cell.objects[i].object, predicted_ms});
+  }
+  return bound;
+}
+
+}  // namespace standin

@@ -1,0 +1,100 @@
+// The time bound of a view space region (3D cell x direction interval), kept per object (thesis 5.2.1, 5.5.2; math.md 4).
+//
+// Every enclosing region of a region's views is valid, so an object counts only where all of these may see it: the boxes of the cell and of
+// its ancestors up to the leaf level of the view space, each paired with the cones of the interval and of all its ancestors up to the whole
+// face. Its cost bound is the one at the nearest distance of the cell's own box (the least over the chain: it falls with distance). Child
+// regions are therefore never bounded above their parents, object by object.
+//
+// Pixel work saturates, so a region has two linear bounds: all terms with their pixels, or the pixel cap and terms without. The smaller is
+// chosen.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "estimation/feature_table.h"
+#include "estimation/time_model.h"
+#include "render/view/enclosing_region.h"
+
+namespace standin {
+
+/// One object's share of a region's bound, in the region's linear form.
+struct RegionTerm {
+  std::uint32_t object = 0;
+  double predicted_ms = 0.0;
+};
+
+/// Cones of all direction nodes down to `leaf_level`, computed once: they depend on the camera alone.
+class DirectionTree {
+ public:
+  DirectionTree(const Camera& camera, int leaf_level);
+  [[nodiscard]] const DirectionCone& cone(const DirectionInterval& interval) const;
+  [[nodiscard]] int leaf_level() const { return leaf_level_; }
+
+ private:
+  int leaf_level_;
+  std::vector<DirectionCone> cones_;
+};
+
+/// What an object costs at most in any view from a cell.
+struct ObjectCost {
+  std::uint32_t object = 0;
+  Box bounds;
+  Cost cost;
+};
+
+/// A cell's objects in hierarchy order, those that may cost anything.
+struct CellCosts {
+  std::vector<Box> chain;  // boxes of the cell and its ancestors, the cell's first
+  std::vector<ObjectCost> objects;
+};
+
+/// Running sums of a region's two linear forms, always added up in hierarchy order.
+struct RegionSums {
+  double with_pixels_ms = 0.0;
+  double capped_ms = 0.0;
+  [[nodiscard]] bool pixels_capped() const { return capped_ms < with_pixels_ms; }
+  [[nodiscard]] double predicted_ms() const { return pixels_capped() ? capped_ms : with_pixels_ms; }
+  void add(const Cost& cost) {
+    with_pixels_ms += cost.fixed_ms + cost.pixel_ms;
+    capped_ms += cost.fixed_ms;
+  }
+};
+
+struct RegionBound {
+  bool pixels_capped = false;  // the linear form chosen
+  double constant_ms = 0.0;    // the frame's own cost, and the pixel cap where capped
+  double predicted_ms = 0.0;   // constant_ms plus all terms, summed in term order
+  std::vector<RegionTerm> terms;
+};
+
+/// All references must outlive it. Const members may be called from several threads.
+class RegionEstimator {
+ public:
+  RegionEstimator(const Scene& scene, const std::vector<std::uint32_t>& hierarchy_rank, const TimeModel& model, const Camera& camera,
+                  double interval_deg);
+
+  /// `visible`: ids of the objects that may be seen from the cell.
+  [[nodiscard]] CellCosts cell_costs(std::vector<Box> chain, std::span<const std::uint32_t> visible) const;
+  /// An empty frame in both linear forms.
+  [[nodiscard]] RegionSums empty_frame() const;
+  [[nodiscard]] bool may_see(const DirectionInterval& interval, const CellCosts& cell, const Box& bounds) const;
+  /// The bound of one region from scratch: what subdivide() finds, for a checker. Uses every ancestor of `interval`.
+  [[nodiscard]] RegionBound region_bound(const CellCosts& cell, const DirectionInterval& interval) const;
+  /// The same from the objects already known to be seen (indices into cell.objects, ascending).
+  [[nodiscard]] RegionBound bound_of(const CellCosts& cell, std::span<const std::uint32_t> seen) const;
+
+  [[nodiscard]] const DirectionTree& directions() const { return directions_; }
+  [[nodiscard]] const FeatureTable& features() const { return features_; }
+  [[nodiscard]] const TimeModel& model() const { return *model_; }
+
+ private:
+  const Scene* scene_;
+  const std::vector<std::uint32_t>* rank_;
+  const TimeModel* model_;
+  FeatureTable features_;
+  DirectionTree directions_;
+};
+
+}  // namespace standin

@@ -1,0 +1,187 @@
+#include "placement/view_space/subdivision.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "placement/view_space/cell_boxes.h"
+#include "placement/view_space/direction_search.h"
+#include "render/base/error.h"
+#include "render/base/parallel.h"
+
+namespace standin {
+namespace {
+
+/// A cell that has been searched.
+struct SearchedCell {
+  Cell cell;
+  std::vector<Box> chain;
+  std::vector<HotRegion> hot;
+  [[nodiscard]] std::uint64_t term_count() const {
+    return std::accumulate(hot.begin(), hot.end(), std::uint64_t{0},
+                           [](std::uint64_t sum, const HotRegion& region) { return sum + region.bound.terms.size(); });
+  }
+};
+
+class Subdivider {
+ public:
+  Subdivider(const Scene& scene, const std::vector<std::uint32_t>& rank, const ViewSpace& space, const Visibility& visibility,
+             const TimeModel& model, const Camera& camera, double interval_deg, const SubdivisionOptions& options, const WorkBudget& budget)
+      : space_(space),
+        visibility_(visibility),
+        options_(options),
+        budget_(budget),
+        cell_boxes_(space),
+        estimator_(scene, rank, model, camera, interval_deg),
+        all_objects_(scene.objects.size()) {
+    std::iota(all_objects_.begin(), all_objects_.end(), 0U);
+  }
+
+  std::vector<SearchedCell> run() {
+    std::vector<SearchedCell> frontier = search_leaves();
+    for (const SearchedCell& searched : frontier) terms_ += searched.term_count();
+    std::vector<SearchedCell> done;
+    while (!frontier.empty()) frontier = halve(std::move(frontier), done);
+    std::sort(done.begin(), done.end(), [](const SearchedCell& a, const SearchedCell& b) { return a.cell.key < b.cell.key; });
+    return done;
+  }
+
+  [[nodiscard]] std::uint64_t cells_not_halved() const { return cells_not_halved_; }
+
+ private:
+  // Children searched at a time; the limit on terms is looked at between batches, so this is fixed and not a matter of threads.
+  static constexpr std::size_t kBatch = 256;
+
+  [[nodiscard]] std::int32_t visible_set_of(const CellKey& leaf) const {
+    if (visibility_.cells.empty()) return -1;
+    const auto found = std::lower_bound(visibility_.cells.begin(), visibility_.cells.end(), leaf);
+    if (found == visibility_.cells.end() || *found != leaf)
+      throw Failure(ErrorWord::kInternal, "visibility: no set for leaf cell (" + std::to_string(leaf.index[0]) + ", " +
+                                              std::to_string(leaf.index[1]) + ", " + std::to_string(leaf.index[2]) + ")");
+    return static_cast<std::int32_t>(found - visibility_.cells.begin());
+  }
+
+  [[nodiscard]] SearchedCell search(const CellKey& key, std::vector<Box> chain, std::int32_t visible_set) const {
+    const auto& visible = visible_set < 0 ? all_objects_ : visibility_.sets[static_cast<std::size_t>(visible_set)];
+    const CellCosts costs = estimator_.cell_costs(chain, visible);
+    DirectionSearchResult found = search_directions(estimator_, costs, options_.predicted_budget_ms);
+    return {{key, chain.front(), visible_set, found.worst_predicted_ms, found.worst_interval}, std::move(chain), std::move(found.hot)};
+  }
+
+  [[nodiscard]] std::vector<SearchedCell> search_leaves() const {
+    const auto& leaves = cell_boxes_.leaves();
+    std::vector<SearchedCell> searched(leaves.size());
+    parallel_for(leaves.size(), options_.threads, budget_,
+                 [&](std::size_t i) { searched[i] = search(leaves[i], cell_boxes_.chain(leaves[i]), visible_set_of(leaves[i])); });
+    return searched;
+  }
+
+  struct ChildTask {
+    CellKey key;
+    std::size_t parent;  // index into the frontier
+  };
+
+  [[nodiscard]] std::vector<ChildTask> child_tasks(const std::vector<SearchedCell>& frontier, std::size_t& next) const {
+    std::vector<ChildTask> tasks;
+    for (; next < frontier.size() && tasks.size() < kBatch; ++next)
+      for (int c = 0; c < 8; ++c) {
+        const CellKey key = frontier[next].cell.key.child(c);
+        if (!cell_boxes_.cell_box(key).empty()) tasks.push_back({key, next});
+      }
+    return tasks;
+  }
+
+  [[nodiscard]] std::vector<SearchedCell> search_children(const std::vector<SearchedCell>& parents,
+                                                          const std::vector<ChildTask>& tasks) const {
+    std::vector<SearchedCell> children(tasks.size());
+    parallel_for(tasks.size(), options_.threads, budget_, [&](std::size_t i) {
+      const SearchedCell& parent = parents[tasks[i].parent];
+      std::vector<Box> chain = {cell_boxes_.cell_box(tasks[i].key)};
+      chain.insert(chain.end(), parent.chain.begin(), parent.chain.end());
+      children[i] = search(tasks[i].key, std::move(chain), parent.cell.visible_set);
+    });
+    return children;
+  }
+
+  // Cells that stay leaves move to `done`; returns the children of the others.
+  [[nodiscard]] std::vector<SearchedCell> halve(std::vector<SearchedCell> frontier, std::vector<SearchedCell>& done) {
+    const auto first_cold = std::stable_partition(frontier.begin(), frontier.end(), [this](const SearchedCell& searched) {
+      return !searched.hot.empty() && searched.cell.key.level < space_.finest_level;
+    });
+    std::move(first_cold, frontier.end(), std::back_inserter(done));
+    frontier.erase(first_cold, frontier.end());
+    std::stable_sort(frontier.begin(), frontier.end(),
+                     [](const SearchedCell& a, const SearchedCell& b) { return a.cell.worst_predicted_ms > b.cell.worst_predicted_ms; });
+    std::vector<SearchedCell> children;
+    std::size_t next = 0;
+    while (next < frontier.size() && terms_ <= options_.max_terms) {
+      const std::size_t first = next;
+      auto batch = search_children(frontier, child_tasks(frontier, next));
+      for (std::size_t i = first; i < next; ++i) {
+        terms_ -= frontier[i].term_count();
+        frontier[i] = {};
+      }
+      for (const SearchedCell& child : batch) terms_ += child.term_count();
+      std::move(batch.begin(), batch.end(), std::back_inserter(children));
+    }
+    cells_not_halved_ += frontier.size() - next;
+    std::move(frontier.begin() + static_cast<std::ptrdiff_t>(next), frontier.end(), std::back_inserter(done));
+    return children;
+  }
+
+  const ViewSpace& space_;
+  const Visibility& visibility_;
+  const SubdivisionOptions& options_;
+  const WorkBudget& budget_;
+  CellBoxes cell_boxes_;
+  RegionEstimator estimator_;
+  std::vector<std::uint32_t> all_objects_;
+  std::uint64_t terms_ = 0;
+  std::uint64_t cells_not_halved_ = 0;
+};
+
+std::vector<DirectionInterval> used_intervals(const std::vector<SearchedCell>& searched) {
+  std::vector<DirectionInterval> intervals;
+  for (const SearchedCell& one : searched)
+    for (const HotRegion& region : one.hot) intervals.push_back(region.interval);
+  std::sort(intervals.begin(), intervals.end());
+  intervals.erase(std::unique(intervals.begin(), intervals.end()), intervals.end());
+  return intervals;
+}
+
+// Frees each searched cell once its terms are copied: the terms are most of the memory.
+Subdivision assemble(std::vector<SearchedCell> searched) {
+  Subdivision result;
+  result.intervals = used_intervals(searched);
+  std::uint64_t term_count = 0;
+  for (const SearchedCell& one : searched) term_count += one.term_count();
+  result.terms.reserve(term_count);
+  for (SearchedCell& one : searched) {
+    const auto cell_id = static_cast<std::uint32_t>(result.cells.size());
+    result.cells.push_back(one.cell);
+    result.worst_predicted_ms = std::max(result.worst_predicted_ms, one.cell.worst_predicted_ms);
+    for (const auto& [interval, bound] : one.hot) {
+      const auto at = std::lower_bound(result.intervals.begin(), result.intervals.end(), interval);
+      result.cpvs.push_back({cell_id, static_cast<std::uint32_t>(at - result.intervals.begin()), bound.pixels_capped, bound.constant_ms,
+                             bound.predicted_ms, result.terms.size(), static_cast<std::uint32_t>(bound.terms.size())});
+      result.terms.insert(result.terms.end(), bound.terms.begin(), bound.terms.end());
+    }
+    one = {};
+  }
+  return result;
+}
+
+}  // namespace
+
+Subdivision subdivide(const Scene& scene, const std::vector<std::uint32_t>& hierarchy_rank, const ViewSpace& view_space,
+                      const Visibility& visibility, const TimeModel& model, const Camera& camera, const ViewSpaceOptions& options,
+                      const SubdivisionOptions& subdivision_options, const WorkBudget& budget) {
+  Subdivider subdivider(scene, hierarchy_rank, view_space, visibility, model, camera, options.interval_deg, subdivision_options, budget);
+  Subdivision result = assemble(subdivider.run());
+  result.visible_sets = visibility.sets;
+  if (subdivider.cells_not_halved() > 0)
+    result.left_out.push_back("halving " + std::to_string(subdivider.cells_not_halved()) + " more hot cells in position: more than " +
+                              std::to_string(subdivision_options.max_terms) + " object terms otherwise");
+  return result;
+}
+
+}  // namespace standin
