@@ -204,7 +204,7 @@ TEST(Raytracer, BaseAlphaCountsAndTheCutoffItselfIsOpaque) {
   for (std::uint32_t material = 1; material <= 3; ++material)
     maker.add_object(pane, glm::translate(Mat4(1.0), Vec3(0, 0, -1.0 * material)), material);
   const Scene scene = maker.take();
-  const auto hits = Raytracer(scene).all(Vec3(0, 0, 5), Vec3(0, 0, -1), 0, 100);
+  const auto hits = Raytracer(scene).all(Vec3(0.3, 0.1, 5), Vec3(0, 0, -1), 0, 100);
   ASSERT_EQ(hits.size(), 2U);
   EXPECT_EQ(hits[0].object, 0U);
   EXPECT_EQ(hits[1].object, 2U);
