@@ -3,6 +3,7 @@
 
 #include <ceres/ceres.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -12,6 +13,8 @@ namespace standin {
 namespace {
 
 using Coefficients = std::array<double, kTermCount>;
+
+constexpr double kNeverReached_ms = std::numeric_limits<double>::max();  // Ceres takes no infinity
 
 /// (predicted - measured) / (measured + small frame) over scaled coefficients u: milliseconds per unit = u * unit.
 struct FrameResidual {
@@ -69,7 +72,7 @@ std::string solve(const std::vector<TimedFrame>& frames, const std::vector<std::
     if (!terms[i]) held.push_back(static_cast<int>(i));
   }
   if (!held.empty()) problem.SetManifold(u.data(), new ceres::SubsetManifold(static_cast<int>(kTermCount), held));
-  if (std::isinf(pixel_cap_ms))
+  if (pixel_cap_ms == kNeverReached_ms)
     problem.SetParameterBlockConstant(&pixel_cap_ms);
   else
     problem.SetParameterLowerBound(&pixel_cap_ms, 0, 0.0);
@@ -93,13 +96,14 @@ CostFit fit_costs(const std::vector<TimedFrame>& frames, const std::vector<std::
   Coefficients u{};
   for (std::size_t i = 0; i < kTermCount; ++i) u[i] = terms[i] ? 1.0 / static_cast<double>(kTermCount) : 0.0;
   CostFit fit;
-  fit.pixel_cap_ms = first_pixel_cap_ms;
+  fit.pixel_cap_ms = std::min(first_pixel_cap_ms, kNeverReached_ms);
   // The first loss is convex where no cap bends the model, so the second, which all but ignores outliers, starts in the right basin.
   ceres::SoftLOneLoss convex(0.2);
   ceres::CauchyLoss redescending(0.1);
   solve(frames, rows, terms, unit, &convex, u, fit.pixel_cap_ms);
   fit.stopped = solve(frames, rows, terms, unit, &redescending, u, fit.pixel_cap_ms);
   for (std::size_t i = 0; i < kTermCount; ++i) fit.milliseconds_per_unit[i] = u[i] * unit[i];
+  if (fit.pixel_cap_ms == kNeverReached_ms) fit.pixel_cap_ms = std::numeric_limits<double>::infinity();
   return fit;
 }
 

@@ -1,0 +1,271 @@
+#include "estimation/features.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <set>
+
+#include "estimation/feature_table.h"
+#include "render/base/error.h"
+#include "small_scenes.h"
+
+namespace standin {
+namespace {
+
+using test::add_object;
+using test::grid_mesh;
+using test::random_mesh;
+using test::random_unit;
+
+const Camera kCamera;
+const View kAhead{Vec3(0.0), Vec3(0.0, 0.0, -1.0)};
+
+Mat4 moved(double x, double y, double z) {
+  return glm::translate(Mat4(1.0), Vec3(x, y, z));
+}
+
+TEST(SurfaceSamples, CarryTheWholeAreaAndCount) {
+  Rng rng(3);
+  for (const int triangles : {1, 7, 64, 65, 1000}) {
+    const Mesh mesh = random_mesh(rng, triangles);
+    double area_m2 = 0.0;
+    for (std::size_t i = 0; i < mesh.triangle_count(); ++i)
+      area_m2 += 0.5 * glm::length(glm::cross(Vec3(mesh.positions[3 * i + 1]) - Vec3(mesh.positions[3 * i]),
+                                              Vec3(mesh.positions[3 * i + 2]) - Vec3(mesh.positions[3 * i])));
+    const SurfaceSamples samples = sample_surface(mesh, 64);
+    double sampled_m2 = 0.0;
+    for (const SurfacePatch& patch : samples.patches) sampled_m2 += glm::length(patch.vector_area_m2);
+    EXPECT_NEAR(sampled_m2, area_m2, 1e-9 * area_m2);
+    EXPECT_NEAR(samples.triangles_per_sample * static_cast<double>(samples.triangles.size()), triangles, 1e-9);
+    EXPECT_LE(samples.triangles.size(), 64U);
+  }
+}
+
+TEST(SurfaceSamples, OfAnEmptyOrFlatMeshHaveNoArea) {
+  EXPECT_TRUE(sample_surface(Mesh{}, 64).patches.empty());
+  const Mesh line = test::mesh_of({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}});
+  EXPECT_TRUE(sample_surface(line, 64).patches.empty());
+  EXPECT_EQ(sample_surface(line, 64).triangles.size(), 1U);
+}
+
+// A 2 x 2 m square at 20 m covers (f 2/20)^2 pixels, f = 256 / tan(22.5 deg).
+TEST(Estimate, OfASquareFacingTheEyeIsItsImage) {
+  Scene scene;
+  add_object(scene, grid_mesh(1.0F, 4), moved(0, 0, -20), true);
+  const double focal_px = 256.0 / std::tan(std::numbers::pi / 8);
+  const Features features = object_features(scene, 0, kAhead, kCamera);
+  EXPECT_NEAR(features[Term::kTexturedPixels], std::pow(focal_px * 0.1, 2), 0.002 * std::pow(focal_px * 0.1, 2));
+  EXPECT_EQ(features[Term::kPlainPixels], 0.0);
+  EXPECT_EQ(features[Term::kDraws], 1.0);
+  EXPECT_EQ(features[Term::kTextureSwitches], 1.0);
+  EXPECT_EQ(features[Term::kTriangles], 32.0);
+  EXPECT_EQ(features[Term::kOnScreenTriangles], 32.0);
+  EXPECT_EQ(features[Term::kCoveringTriangles], 32.0);  // 119 pixels each
+  EXPECT_EQ(features[Term::kFrame], 0.0);
+}
+
+TEST(Estimate, CountsSubPixelTrianglesByTheirShareOfAPixel) {
+  Scene scene;
+  add_object(scene, grid_mesh(1.0F, 30), moved(0, 0, -200), false);
+  const double focal_px = 256.0 / std::tan(std::numbers::pi / 8);
+  const double pixels = std::pow(focal_px * 0.01, 2);  // 38 pixels of 1800 triangles
+  const Features features = object_features(scene, 0, kAhead, kCamera);
+  EXPECT_NEAR(features[Term::kCoveringTriangles], pixels, 0.002 * pixels);
+  EXPECT_NEAR(features[Term::kPlainPixels], pixels, 0.002 * pixels);
+  EXPECT_EQ(features[Term::kTextureSwitches], 0.0);
+}
+
+TEST(Estimate, FallsWithTheCosineOfAGrazingView) {
+  Scene scene;
+  const double angle = 1.2;
+  add_object(scene, grid_mesh(1.0F, 8), moved(0, 0, -50) * glm::rotate(Mat4(1.0), angle, Vec3(0, 1, 0)), false);
+  const double focal_px = kCamera.focal_px();
+  const double expected = std::pow(focal_px * 2.0 / 50.0, 2) * std::cos(angle);
+  EXPECT_NEAR(object_features(scene, 0, kAhead, kCamera)[Term::kPlainPixels], expected, 0.01 * expected);
+}
+
+TEST(Estimate, GrowsTowardsTheCornerAsTheProjectionDoes) {
+  // Perpendicular to the image plane's axis: a patch at the corner has the same size in pixels as at the centre, though farther away.
+  Scene scene;
+  const double corner = 0.9 * 50.0 * kCamera.tan_half_x();
+  add_object(scene, grid_mesh(1.0F, 8), moved(corner, corner, -50), false);
+  const double expected = std::pow(kCamera.focal_px() * 2.0 / 50.0, 2);
+  EXPECT_NEAR(object_features(scene, 0, kAhead, kCamera)[Term::kPlainPixels], expected, 0.01 * expected);
+}
+
+TEST(Estimate, HalvesWhenHalfIsOffScreen) {
+  Scene scene;
+  add_object(scene, grid_mesh(4.0F, 20), moved(50.0 * kCamera.tan_half_x(), 0, -50), false);
+  const Features features = object_features(scene, 0, kAhead, kCamera);
+  EXPECT_NEAR(features[Term::kOnScreenTriangles] / features[Term::kTriangles], 0.5, 0.1);
+  EXPECT_NEAR(features[Term::kPlainPixels], 0.5 * std::pow(kCamera.focal_px() * 8.0 / 50.0, 2),
+              0.05 * std::pow(kCamera.focal_px() * 8.0 / 50.0, 2));
+}
+
+TEST(Estimate, IsZeroOutsideTheFrustum) {
+  Scene scene;
+  add_object(scene, grid_mesh(1.0F, 2), moved(0, 0, 20), true);
+  add_object(scene, grid_mesh(1.0F, 2), moved(30, 0, -20), true);
+  for (const std::uint32_t id : {0U, 1U})
+    for (const double value : object_features(scene, id, kAhead, kCamera).value) EXPECT_EQ(value, 0.0);
+}
+
+TEST(Estimate, OfACulledBackSideHasNoPixels) {
+  Scene scene;
+  add_object(scene, grid_mesh(1.0F, 2), moved(0, 0, -20), false, AlphaMode::kOpaque, false);
+  const Mat4 turned = moved(0, 0, -20) * glm::rotate(Mat4(1.0), std::numbers::pi, Vec3(0, 1, 0));
+  add_object(scene, grid_mesh(1.0F, 2), turned, false, AlphaMode::kOpaque, false);
+  const Mat4 mirrored = moved(0, 0, -20) * glm::scale(Mat4(1.0), Vec3(-1, 1, 1));  // winding flips, front stays front (glTF)
+  add_object(scene, grid_mesh(1.0F, 2), mirrored, false, AlphaMode::kOpaque, false);
+  EXPECT_GT(object_features(scene, 0, kAhead, kCamera)[Term::kPlainPixels], 0.0);
+  EXPECT_EQ(object_features(scene, 1, kAhead, kCamera)[Term::kPlainPixels], 0.0);
+  EXPECT_EQ(object_features(scene, 1, kAhead, kCamera)[Term::kTriangles], 8.0);
+  EXPECT_DOUBLE_EQ(object_features(scene, 2, kAhead, kCamera)[Term::kPlainPixels],
+                   object_features(scene, 0, kAhead, kCamera)[Term::kPlainPixels]);
+}
+
+TEST(Estimate, NamesPixelsAsTheRendererDrawsThem) {
+  Scene scene;
+  add_object(scene, grid_mesh(1.0F, 2), moved(0, 0, -20), true, AlphaMode::kMask);
+  add_object(scene, grid_mesh(1.0F, 2), moved(0, 0, -20), false, AlphaMode::kMask);  // nothing to test: plain
+  add_object(scene, grid_mesh(1.0F, 2), moved(0, 0, -20), true);
+  scene.meshes[2].uvs.clear();
+  const FeatureTable table(scene, kCamera);
+  const PreparedView view(kAhead, kCamera);
+  EXPECT_GT(table.estimate(0, view)[Term::kMaskedPixels], 0.0);
+  EXPECT_GT(table.estimate(1, view)[Term::kPlainPixels], 0.0);
+  EXPECT_GT(table.estimate(2, view)[Term::kPlainPixels], 0.0);
+  EXPECT_EQ(table.estimate(2, view)[Term::kTextureSwitches], 0.0);
+}
+
+// Against the exact areas of the projected triangles (shoelace), all of them on screen.
+TEST(Estimate, AgreesWithProjectedTriangles) {
+  double sum_of_errors = 0.0;
+  for (std::uint64_t seed = 0; seed < 40; ++seed) {
+    Rng rng(seed, 5);
+    Scene scene;
+    const Mat4 world_from_object = moved(rng.uniform(-2, 2), rng.uniform(-2, 2), -rng.uniform(15, 60)) *
+                                   glm::rotate(Mat4(1.0), rng.uniform(0, 6), random_unit(rng)) *
+                                   glm::scale(Mat4(1.0), Vec3(rng.uniform(0.5, 2), rng.uniform(0.5, 2), rng.uniform(0.5, 2)));
+    add_object(scene, random_mesh(rng, 300), world_from_object, false);
+    const Mesh& mesh = scene.meshes[0];
+    double pixels = 0.0;
+    for (std::size_t i = 0; i < mesh.positions.size(); i += 3) {
+      std::array<Vec2, 3> image{Vec2(0.0), Vec2(0.0), Vec2(0.0)};
+      for (std::size_t k = 0; k < 3; ++k) {
+        const Vec3 world(world_from_object * Vec4(Vec3(mesh.positions[i + k]), 1.0));
+        image[k] = kCamera.focal_px() * Vec2(world) / -world.z;
+      }
+      const Vec2 a = image[1] - image[0], b = image[2] - image[0];
+      pixels += 0.5 * std::abs(a.x * b.y - a.y * b.x);
+    }
+    const double estimate = object_features(scene, 0, kAhead, kCamera)[Term::kPlainPixels];
+    EXPECT_NEAR(estimate, pixels, 0.25 * pixels) << "seed " << seed;
+    sum_of_errors += estimate / pixels - 1.0;
+  }
+  EXPECT_NEAR(sum_of_errors / 40, 0.0, 0.03);  // unbiased
+}
+
+TEST(Estimate, DoesNotDependOnWhereInTheWorldTheSceneLies) {
+  Rng rng(11);
+  const Mesh mesh = random_mesh(rng, 100);
+  Scene near, far;
+  add_object(near, mesh, moved(1, 2, -9), true);
+  add_object(far, mesh, moved(4e6 + 1, 2, 7e6 - 9), true);
+  const Features a = object_features(near, 0, kAhead, kCamera);
+  const Features b = object_features(far, 0, {Vec3(4e6, 0, 7e6), kAhead.direction}, kCamera);
+  for (std::size_t i = 0; i < kTermCount; ++i) EXPECT_NEAR(a.value[i], b.value[i], 1e-6 * a.value[i]);
+}
+
+Scene random_scene(Rng& rng) {
+  Scene scene;
+  for (int i = 0; i < 4; ++i) {
+    const Mat4 transform = moved(rng.uniform(-5, 5), rng.uniform(-5, 5), rng.uniform(-5, 5)) *
+                           glm::rotate(Mat4(1.0), rng.uniform(0, 6), random_unit(rng)) *
+                           glm::scale(Mat4(1.0), Vec3(rng.uniform(0.1, 3), rng.uniform(-3, -0.1), rng.uniform(0.1, 3)));
+    Mesh mesh = i == 0 ? grid_mesh(2.0F, 3) : random_mesh(rng, static_cast<int>(1 + rng.below(200)));
+    add_object(scene, std::move(mesh), transform, i % 2 == 0, i == 2 ? AlphaMode::kMask : AlphaMode::kOpaque, i != 3);
+  }
+  return scene;
+}
+
+TEST(Bound, IsNeverBelowAnEstimateAtOrBeyondItsDistance) {
+  int seen = 0;
+  for (std::uint64_t seed = 0; seed < 60; ++seed) {
+    Rng rng(seed, 7);
+    const Scene scene = random_scene(rng);
+    Camera camera;
+    camera.fov_y_rad = rng.uniform(0.2, 2.4);
+    camera.width = seed % 3 == 0 ? 900 : 512;
+    const FeatureTable table(scene, camera);
+    for (int i = 0; i < 300; ++i) {
+      const auto object = static_cast<std::uint32_t>(rng.below(scene.objects.size()));
+      const Box& bounds = scene.objects[object].bounds;
+      const Vec3 eye = bounds.centre() + std::pow(10.0, rng.uniform(-3.0, 2.0)) * random_unit(rng);
+      const Vec3 towards = bounds.centre() - eye + 0.5 * glm::length(bounds.centre() - eye) * rng.uniform() * random_unit(rng);
+      const View view{eye, glm::normalize(towards)};
+      const Features estimate = table.estimate(object, PreparedView(view, camera));
+      const Features at_distance = table.bound(object, distance(eye, bounds));
+      const Features nearer = table.bound(object, rng.uniform() * distance(eye, bounds));
+      seen += estimate[Term::kDraws] > 0.0 ? 1 : 0;
+      for (std::size_t t = 0; t < kTermCount; ++t) {
+        ASSERT_LE(estimate.value[t], at_distance.value[t]) << term_name(static_cast<Term>(t)) << ", seed " << seed << ", view " << i;
+        ASSERT_LE(at_distance.value[t], nearer.value[t]) << term_name(static_cast<Term>(t)) << ", seed " << seed << ", view " << i;
+        ASSERT_TRUE(std::isfinite(nearer.value[t]));
+      }
+    }
+  }
+  EXPECT_GT(seen, 10000);
+}
+
+TEST(Bound, OfAFarFacingSquareIsItsImageAtTheCorner) {
+  Scene scene;
+  add_object(scene, grid_mesh(0.01F, 4), Mat4(1.0), false);
+  const double magnification = std::pow(std::cos(kCamera.half_diagonal_rad()), -3.0);
+  const double expected = magnification * std::pow(kCamera.focal_px() * 0.02 / 10.0, 2);
+  EXPECT_NEAR(object_features_bound(scene, 0, 10.0, kCamera)[Term::kPlainPixels], expected, 0.01 * expected);
+}
+
+TEST(Bound, OfAClosedCulledSurfaceCountsHalf) {
+  // Two squares back to back: only one faces any eye.
+  Scene scene;
+  Mesh mesh = grid_mesh(0.01F, 4);
+  Mesh back = mesh;
+  for (std::size_t i = 0; i + 2 < back.indices.size(); i += 3) std::swap(back.indices[i], back.indices[i + 1]);
+  for (const std::uint32_t index : back.indices) mesh.indices.push_back(index);
+  add_object(scene, mesh, Mat4(1.0), false, AlphaMode::kOpaque, false);
+  add_object(scene, mesh, Mat4(1.0), false, AlphaMode::kOpaque, true);
+  const double culled = object_features_bound(scene, 0, 10.0, kCamera)[Term::kPlainPixels];
+  const double double_sided = object_features_bound(scene, 1, 10.0, kCamera)[Term::kPlainPixels];
+  EXPECT_NEAR(culled / double_sided, 0.5, 0.01);
+}
+
+TEST(Bound, RefusesANegativeDistance) {
+  Scene scene;
+  add_object(scene, grid_mesh(1.0F, 1), Mat4(1.0), false);
+  EXPECT_THROW((void)object_features_bound(scene, 0, -1.0, kCamera), Failure);
+  EXPECT_THROW((void)object_features_bound(scene, 0, std::nan(""), kCamera), Failure);
+}
+
+TEST(FeatureTable, AFrameIsTheSumOfItsObjects) {
+  Rng rng(2);
+  const Scene scene = random_scene(rng);
+  const FeatureTable table(scene, kCamera);
+  const View view{scene.bounds.centre() + Vec3(0, 0, 30), kAhead.direction};
+  Features expected = frame_features();
+  for (std::uint32_t id = 0; id < 4; ++id) expected += object_features(scene, id, view, kCamera);
+  const std::vector<std::uint32_t> all = {0, 1, 2, 3};
+  EXPECT_EQ(table.frame(all, view).value, expected.value);
+  EXPECT_EQ(table.frame({}, view).value, frame_features().value);
+}
+
+TEST(Terms, HaveDistinctNames) {
+  std::set<std::string_view> names;
+  for (std::size_t i = 0; i < kTermCount; ++i) names.insert(term_name(static_cast<Term>(i)));
+  EXPECT_EQ(names.size(), kTermCount);
+  EXPECT_FALSE(names.contains(""));
+}
+
+}  // namespace
+}  // namespace standin

@@ -1,0 +1,76 @@
+// Calibration from end to end on a small scene with the fake timer, whose milliseconds are a known function of what was drawn.
+#include <gtest/gtest.h>
+
+#include "estimation/calibrate.h"
+#include "small_scenes.h"
+
+namespace standin {
+namespace {
+
+Scene small_scene() {
+  Scene scene;
+  Rng rng(1);
+  for (int i = 0; i < 24; ++i) {
+    const Mat4 place = glm::translate(Mat4(1.0), Vec3(8.0 * (i % 5), 1.0, 8.0 * static_cast<double>(i / 5)));
+    test::add_object(scene, test::random_mesh(rng, static_cast<int>(20 + rng.below(200))), place, i % 3 == 0,
+                     i % 6 == 0 ? AlphaMode::kMask : AlphaMode::kOpaque);
+  }
+  return scene;
+}
+
+double fake_ms(const FrameCounts& counts) {
+  return 0.3 + 0.02 * static_cast<double>(counts.draws) + 1e-3 * static_cast<double>(counts.triangles);
+}
+
+class Sampling : public ::testing::Test {
+ protected:
+  [[nodiscard]] std::vector<TimedFrame> sample(double seconds, std::uint64_t seed) {
+    context_->make_current();
+    const auto timer = make_fake_frame_timer(fake_ms);
+    CalibrationOptions options;
+    options.seconds = seconds;
+    options.seed = seed;
+    return sample_frames(scene_, 3, *context_, *timer, camera_, options, {});
+  }
+
+  Camera camera_{.width = 64, .height = 64};
+  Scene scene_ = small_scene();
+  std::unique_ptr<Context> context_ = make_context(DeviceKind::kOsMesa, 64, 64);
+};
+
+TEST_F(Sampling, FindsTheCostsOfAFakeDevice) {
+  const std::vector<TimedFrame> frames = sample(3.0, 1);
+  ASSERT_GE(frames.size(), 100U);
+  for (const TimedFrame& frame : frames) EXPECT_EQ(frame.group, 3U);
+  const FitSummary fit = fit_time_model(frames, 0.95);
+  EXPECT_NEAR(fit.model.milliseconds_per_unit[static_cast<std::size_t>(Term::kFrame)], 0.3, 0.01);
+  EXPECT_NEAR(fit.model.milliseconds_per_unit[static_cast<std::size_t>(Term::kDraws)], 0.02, 0.001);
+  EXPECT_NEAR(fit.model.milliseconds_per_unit[static_cast<std::size_t>(Term::kTriangles)], 1e-3, 2e-5);
+  EXPECT_LT(fit.median_error, 0.01);
+}
+
+TEST_F(Sampling, ShowsEveryTerm) {
+  Features most;
+  for (const TimedFrame& frame : sample(3.0, 2))
+    for (std::size_t i = 0; i < kTermCount; ++i) most.value[i] = std::max(most.value[i], frame.features.value[i]);
+  for (std::size_t i = 0; i < kTermCount; ++i) EXPECT_GT(most.value[i], 0.0) << term_name(static_cast<Term>(i));
+}
+
+TEST_F(Sampling, DependsOnTheSeedAlone) {
+  const auto same_features = [](const TimedFrame& a, const TimedFrame& b) { return a.features.value == b.features.value; };
+  const std::vector<TimedFrame> first = sample(0.5, 7), longer = sample(1.0, 7), other = sample(0.5, 8);
+  ASSERT_LT(first.size(), longer.size());
+  EXPECT_TRUE(std::equal(first.begin(), first.end(), longer.begin(), same_features)) << "more seconds only add frames";
+  EXPECT_FALSE(std::equal(first.begin(), first.end(), other.begin(), same_features));
+}
+
+TEST_F(Sampling, StopsOnRequestAndRefusesNoTime) {
+  EXPECT_THROW((void)sample(0.0, 1), Failure);
+  const std::atomic<bool> stop = true;
+  const auto timer = make_fake_frame_timer(fake_ms);
+  context_->make_current();
+  EXPECT_THROW((void)sample_frames(scene_, 0, *context_, *timer, camera_, {}, WorkBudget(&stop)), Failure);
+}
+
+}  // namespace
+}  // namespace standin
