@@ -272,6 +272,7 @@ PlacementFile parse(const json& object) {
   file.camera.width = camera.at("width");
   file.camera.height = camera.at("height");
   file.view_space = to_view_space(object.at("view_space"));
+  file.atlas_pages = object.at("atlas_pages");
   Placement& placement = file.placement;
   read_cells(object.at("cells"), placement);
   for (const auto& entry : object.at("intervals")) placement.intervals.push_back(to_interval(entry));
@@ -308,6 +309,7 @@ json placement_to_json(const PlacementFile& file, const Scene& scene) {
           {"budget_ms", file.spec.budget_ms},
           {"camera", {{"fov_y_deg", file.spec.fov_y_deg}, {"width", file.camera.width}, {"height", file.camera.height}, {"up", {0, 1, 0}}}},
           {"view_space", view_space_json(file.view_space)},
+          {"atlas_pages", file.atlas_pages},
           {"cells", cells_json(placement)},
           {"faces", faces_json()},
           {"intervals", intervals_json(placement.intervals)},

@@ -22,6 +22,7 @@ struct PlacementFile {
   double coverage = 0.0;
   Camera camera;
   ViewSpace view_space;
+  std::uint32_t atlas_pages = 0;  // a texture switch each, charged to every region that draws an impostor
   Placement placement;
 };
 

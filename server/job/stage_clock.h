@@ -25,7 +25,9 @@ class StageClock {
     return std::forward<Stage>(stage)();
   }
 
-  void leave_out(std::string what, std::string why) { left_out_.push_back({{"what", std::move(what)}, {"why", std::move(why)}}); }
+  void leave_out(std::string stage, std::string reason) {
+    left_out_.push_back({{"stage", std::move(stage)}, {"reason", std::move(reason)}});
+  }
   [[nodiscard]] const nlohmann::json& seconds() const { return seconds_; }
   [[nodiscard]] const nlohmann::json& left_out() const { return left_out_; }
 

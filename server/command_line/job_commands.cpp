@@ -1,0 +1,75 @@
+// survey and place: run the pipeline, say in a few lines what came out.
+#include <cstdio>
+#include <iostream>
+
+#include "server/command_line/commands.h"
+#include "server/pipeline.h"
+
+namespace standin {
+namespace {
+
+using nlohmann::json;
+
+JobFiles files_of(const CommandArguments& arguments) {
+  return {arguments.scenes.front(), arguments.target, arguments.output};
+}
+
+double number(const json& object, const char* section, const char* key) {
+  return object.at(section).at(key).get<double>();
+}
+
+void print_survey(const json& metrics) {
+  std::printf("worst view %.2f ms (p99 %.2f, p50 %.2f); highest bound of a region %.2f ms\n", number(metrics, "survey", "worst_frame_ms"),
+              number(metrics, "survey", "p99_frame_ms"), number(metrics, "survey", "p50_frame_ms"),
+              number(metrics, "survey", "worst_bound_ms"));
+  std::printf("reachable by impostors: %.2f ms for all views, %.2f for 99 %%, %.2f for 90 %%\n",
+              number(metrics, "survey", "reachable_all_ms"), number(metrics, "survey", "reachable_p99_ms"),
+              number(metrics, "survey", "reachable_p90_ms"));
+  std::printf("%s\n", metrics["survey"]["verdict"].get<std::string>().c_str());
+  std::printf("slow regions spend %.0f %% on draws, %.0f %% on triangles, %.0f %% on pixels\n",
+              100 * number(metrics, "causes", "draws_share"), 100 * number(metrics, "causes", "triangles_share"),
+              100 * number(metrics, "causes", "pixels_share"));
+}
+
+void print_left_out(const json& metrics) {
+  for (const auto& entry : metrics["left_out"])
+    std::printf("left out: %s (%s)\n", entry["stage"].get<std::string>().c_str(), entry["reason"].get<std::string>().c_str());
+}
+
+void print_place(const json& metrics) {
+  std::printf("%s of %s CPVs solved, %s impostors, %.3f MB of texture (lower bound %.3f MB)\n", metrics["cpv"]["solved"].dump().c_str(),
+              metrics["cpv"]["count"].dump().c_str(), metrics["impostors"]["count"].dump().c_str(),
+              number(metrics, "memory", "texture_bytes") / 1e6, number(metrics, "bound", "memory_lower_bound_bytes") / 1e6);
+  for (const auto& entry : metrics["unsolved"]) {
+    std::printf("unsolved: cpv %s (%s): %.2f ms, lowest budget %.2f ms, because of", entry["cpv"].dump().c_str(),
+                entry["region"].get<std::string>().c_str(), entry["bound_after_ms"].get<double>(), entry["lowest_budget_ms"].get<double>());
+    for (const auto& object : entry["blocking"]) std::printf(" %s", object["name"].get<std::string>().c_str());
+    std::printf("\n");
+  }
+  const json& verify = metrics["verify"];
+  std::printf("verified %s views: %s over budget (measured), %s (estimated); gap pixels %s, parallax ratio %s\n",
+              verify["views"].dump().c_str(), verify["over_budget_measured"].dump().c_str(), verify["over_budget_estimated"].dump().c_str(),
+              metrics["image"]["gap_pixels"].dump().c_str(), metrics["image"]["max_parallax_ratio"].dump().c_str());
+}
+
+int finish(const JobOutcome& outcome, const CommandContext& context, void (*print)(const json&)) {
+  if (context.arguments.json) {
+    std::cout << outcome.metrics.dump(2) << "\n";
+  } else {
+    print(outcome.metrics);
+    print_left_out(outcome.metrics);
+  }
+  return outcome.aim_met ? 0 : 1;
+}
+
+}  // namespace
+
+int survey_command(const CommandContext& context) {
+  return finish(run_survey(files_of(context.arguments), context.spec, context.budget), context, print_survey);
+}
+
+int place_command(const CommandContext& context) {
+  return finish(run_place(files_of(context.arguments), context.spec, context.budget), context, print_place);
+}
+
+}  // namespace standin

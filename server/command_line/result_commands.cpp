@@ -1,0 +1,139 @@
+// check, verify and report: what was placed, looked at again.
+#include <cstdio>
+#include <filesystem>
+#include <iostream>
+
+#include "placement/check/check.h"
+#include "render/base/error.h"
+#include "render/scene/hierarchy.h"
+#include "render/scene/load.h"
+#include "server/command_line/commands.h"
+#include "server/files/atomic_file.h"
+#include "server/files/placement_json.h"
+#include "server/job/target_device.h"
+#include "server/job/world.h"
+#include "server/pipeline.h"
+#include "server/report/pictures.h"
+#include "server/report/report.h"
+#include "server/verify/shipped_impostors.h"
+#include "server/verify/verify.h"
+#include "server/verify/verify_json.h"
+
+namespace standin {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+json read_json(const fs::path& file) {
+  json object = json::parse(read_file(file), nullptr, false);
+  if (object.is_discarded()) throw Failure(ErrorWord::kFileBroken, file.string() + " is not JSON");
+  return object;
+}
+
+// A result folder with its inputs opened again; inputs that changed since are refused.
+struct OpenedPlacement {
+  PlacementFile file;
+  Scene scene;
+  Hierarchy hierarchy;
+  Target target;
+};
+
+std::string input_path(const CommandContext& context, const std::string& given, const char* which) {
+  if (!given.empty()) return given;
+  const fs::path file = fs::path(context.arguments.folder) / kInputsFile;
+  if (!fs::exists(file))
+    throw Failure(ErrorWord::kBadUsage, context.arguments.folder + " does not say where its " + which + " is: give --" + which);
+  return read_json(file).at(which).get<std::string>();
+}
+
+void require_same(const std::string& what, const std::string& path, const std::string& is, const std::string& was) {
+  if (is != was) throw Failure(ErrorWord::kFileBroken, what + " " + path + " has SHA-256 " + is + ", the placement was made for " + was);
+}
+
+OpenedPlacement open_placement(const CommandContext& context) {
+  const fs::path file = fs::path(context.arguments.folder) / "placement.json";
+  OpenedPlacement opened{placement_from_json(read_json(file), file.string()), {}, {}, {}};
+  const std::string scene_path = input_path(context, context.arguments.scenes.empty() ? "" : context.arguments.scenes.front(), "scene");
+  JobSpec spec = opened.file.spec;
+  spec.texture_folders = context.spec.texture_folders;
+  opened.scene = load_scene(scene_path, load_options(spec));
+  require_same("scene", scene_path, opened.scene.sha256, opened.file.scene_sha256);
+  opened.hierarchy = build_hierarchy(opened.scene);
+  const std::string target_path = input_path(context, context.arguments.target, "target");
+  opened.target = read_target(target_path);
+  require_same("target", target_path, opened.target.sha256, opened.file.target_sha256);
+  return opened;
+}
+
+json check_json(const CheckReport& report) {
+  json findings = json::array();
+  for (const auto& finding : report.findings)
+    findings.push_back({{"violation", violation_name(finding.violation)}, {"index", finding.index}, {"sentence", finding.sentence}});
+  return {{"cpvs", report.cpvs},
+          {"solved", report.solved},
+          {"regions", report.regions},
+          {"texture_bytes", report.texture_bytes},
+          {"geometry_bytes", report.geometry_bytes},
+          {"worst_bound_after_ms", report.worst_bound_after_ms},
+          {"violations", report.findings.size()},
+          {"findings", std::move(findings)}};
+}
+
+}  // namespace
+
+int check_command(const CommandContext& context) {
+  const OpenedPlacement opened = open_placement(context);
+  const PlacementFile& file = opened.file;
+  const CheckInput input{opened.scene,    opened.hierarchy.rank,  opened.target.model, file.camera,
+                         file.view_space, file.spec.interval_deg, file.spec.budget_ms, file.atlas_pages};
+  const CheckReport report = check_placement(input, file.placement, thread_count(context.spec), context.budget);
+  if (context.arguments.json) {
+    std::cout << check_json(report).dump(2) << "\n";
+  } else {
+    std::printf("%u CPVs, %u solved; %llu regions bounded; %.3f MB of texture; highest bound of a CPV %.3f ms, budget %.3f ms\n",
+                report.cpvs, report.solved, static_cast<unsigned long long>(report.regions),
+                static_cast<double>(report.texture_bytes) / 1e6, report.worst_bound_after_ms, file.spec.budget_ms);
+    for (const auto& finding : report.findings) std::printf("%s: %s\n", violation_name(finding.violation), finding.sentence.c_str());
+  }
+  return report.findings.empty() && report.solved == report.cpvs ? 0 : 1;
+}
+
+int verify_command(const CommandContext& context) {
+  const OpenedPlacement opened = open_placement(context);
+  const PlacementFile& file = opened.file;
+  const std::string glb = read_file(fs::path(context.arguments.folder) / "impostors.glb");
+  const double alpha_rad = file.spec.alpha_scale * file.camera.pixel_angle_rad();
+  const VerifyInput input{opened.scene, opened.target, file.placement, file.view_space, file.camera, glb, file.spec.budget_ms, alpha_rad};
+  VerifyOptions options;
+  options.views = context.spec.verify_views;
+  options.judged_views = options.views;
+  options.seed = context.spec.seed + 1;
+  options.threads = thread_count(context.spec);
+  options.pictures = 0;
+  const VerifyResult result = verify_placement(input, device_kind(opened.target), device_matches(opened.target), options, context.budget);
+  const json object = {{"verify", verify_json(result)}, {"image", image_json(result)}};
+  write_file(fs::path(context.arguments.folder) / "verify.json", object.dump(1));
+  json summary = object;
+  summary["verify"].erase("frames");
+  std::cout << summary.dump(2) << "\n";
+  const bool kept = result.over_budget_measured * 100 <= result.views.size() && result.gap_pixels == 0 && result.max_parallax_ratio <= 1.0;
+  return kept ? 0 : 1;
+}
+
+int report_command(const CommandContext& context) {
+  const fs::path folder = context.arguments.folder;
+  const json metrics = read_json(folder / "metrics.json");
+  const bool has_placement = fs::exists(folder / "placement.json");
+  const json placement = has_placement ? read_json(folder / "placement.json") : json();
+  std::vector<ReportPicture> pictures;
+  if (has_placement) {
+    const PlacementFile file = placement_from_json(placement, (folder / "placement.json").string());
+    pictures = report_pictures({}, read_shipped_impostors(read_file(folder / "impostors.glb"), file.placement));
+  }
+  write_file(folder / "report.html", make_report(metrics, placement, pictures));
+  std::printf("%s\n", (folder / "report.html").c_str());
+  return 0;
+}
+
+}  // namespace standin

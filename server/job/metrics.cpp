@@ -1,0 +1,162 @@
+#include "server/job/metrics.h"
+
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <map>
+
+namespace standin {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::size_t kNamedObjects = 5;
+
+// Highest bound after placement per cell: of its CPVs, and of its regions that are none (those keep theirs, which is within the budget).
+std::vector<double> after_per_cell(const Subdivision& subdivision, const Placement& placement) {
+  std::vector<double> after_ms(subdivision.cells.size(), 0.0);
+  for (const auto& cpv : placement.cpvs) after_ms[cpv.cell] = std::max(after_ms[cpv.cell], cpv.bound_after_ms);
+  return after_ms;
+}
+
+std::string region_name(const Subdivision& subdivision, const Cpv& cpv) {
+  const DirectionInterval& interval = subdivision.intervals[cpv.interval];
+  const auto& index = subdivision.cells[cpv.cell].key.index;
+  return "cell " + std::to_string(index[0]) + "," + std::to_string(index[1]) + "," + std::to_string(index[2]) + ", facing " +
+         std::string(face_frame(interval.face).name) + " " + std::to_string(interval.i) + "," + std::to_string(interval.j);
+}
+
+// Largest first; ties by object id.
+std::vector<RegionTerm> largest_terms(std::vector<RegionTerm> terms, std::size_t count) {
+  const auto larger = [](const RegionTerm& a, const RegionTerm& b) {
+    return a.predicted_ms != b.predicted_ms ? a.predicted_ms > b.predicted_ms : a.object < b.object;
+  };
+  const auto middle = terms.begin() + static_cast<std::ptrdiff_t>(std::min(count, terms.size()));
+  std::partial_sort(terms.begin(), middle, terms.end(), larger);
+  terms.erase(middle, terms.end());
+  return terms;
+}
+
+json objects_json(const World& world, const std::vector<RegionTerm>& terms) {
+  json list = json::array();
+  for (const auto& term : terms)
+    list.push_back({{"object", term.object}, {"name", world.scene.objects[term.object].name}, {"ms", term.predicted_ms}});
+  return list;
+}
+
+// Originals that are still drawn in a CPV.
+std::vector<RegionTerm> drawn_terms(const Subdivision& subdivision, const Cpv& cpv, const Placement& placement,
+                                    const PlacementCpv& placed) {
+  std::vector<RegionTerm> drawn;
+  for (const auto& term : subdivision.terms_of(cpv)) {
+    const bool replaced = std::ranges::any_of(
+        placed.impostors, [&](std::uint32_t id) { return std::ranges::binary_search(placement.impostors[id].objects, term.object); });
+    if (!replaced) drawn.push_back(term);
+  }
+  return drawn;
+}
+
+// Index of the slowest CPV of each cell that has any.
+std::vector<std::size_t> slowest_cpv_per_cell(const Subdivision& subdivision) {
+  std::map<std::uint32_t, std::size_t> slowest;
+  for (std::size_t p = 0; p < subdivision.cpvs.size(); ++p) {
+    const auto [entry, is_new] = slowest.try_emplace(subdivision.cpvs[p].cell, p);
+    if (!is_new && subdivision.cpvs[p].predicted_ms > subdivision.cpvs[entry->second].predicted_ms) entry->second = p;
+  }
+  std::vector<std::size_t> list;
+  for (const auto& [cell, p] : slowest) list.push_back(p);
+  return list;
+}
+
+struct CauseShares {
+  double draws_ms = 0.0, triangles_ms = 0.0, pixels_ms = 0.0;
+
+  void add(const Features& features, const TimeModel& model, bool pixels_capped) {
+    for (std::size_t i = 0; i < kTermCount; ++i) {
+      const auto term = static_cast<Term>(i);
+      const double ms = features.value[i] * model.milliseconds_per_unit[i];
+      if (term == Term::kDraws || term == Term::kTextureSwitches)
+        draws_ms += ms;
+      else if (!is_pixel_term(term))
+        triangles_ms += ms;
+      else if (!pixels_capped)
+        pixels_ms += ms;
+    }
+  }
+  [[nodiscard]] double share(double ms) const {
+    const double total_ms = draws_ms + triangles_ms + pixels_ms;
+    return total_ms > 0.0 ? ms / total_ms : 0.0;
+  }
+};
+
+}  // namespace
+
+json heat_map_json(const Subdivision& subdivision, const Placement* placement, const TimeModel& model) {
+  const auto after_ms = placement != nullptr ? after_per_cell(subdivision, *placement) : std::vector<double>();
+  json map = json::array();
+  for (std::size_t c = 0; c < subdivision.cells.size(); ++c) {
+    const Cell& cell = subdivision.cells[c];
+    const double before_ms = model.bound_ms(cell.worst_predicted_ms);
+    json after;
+    if (placement != nullptr) after = after_ms[c] > 0.0 ? after_ms[c] : before_ms;
+    map.push_back({{"x0", cell.box.min.x},
+                   {"z0", cell.box.min.z},
+                   {"x1", cell.box.max.x},
+                   {"z1", cell.box.max.z},
+                   {"before_ms", before_ms},
+                   {"after_ms", after}});
+  }
+  return map;
+}
+
+json causes_json(const World& world, const Subdivision& subdivision, const TimeModel& model) {
+  const FeatureTable table(world.scene, world.camera);
+  CauseShares shares;
+  std::map<std::uint32_t, double> by_object;
+  for (const auto p : slowest_cpv_per_cell(subdivision)) {
+    const Cpv& cpv = subdivision.cpvs[p];
+    const Box& box = subdivision.cells[cpv.cell].box;
+    for (const auto& term : subdivision.terms_of(cpv)) {
+      shares.add(table.bound(term.object, distance(box, world.scene.objects[term.object].bounds)), model, cpv.pixels_capped);
+      by_object[term.object] += term.predicted_ms;
+    }
+    if (cpv.pixels_capped) shares.pixels_ms += model.pixel_cap_ms;
+  }
+  std::vector<RegionTerm> objects;
+  for (const auto& [object, ms] : by_object) objects.push_back({object, ms});
+  return {{"draws_share", shares.share(shares.draws_ms)},
+          {"triangles_share", shares.share(shares.triangles_ms)},
+          {"pixels_share", shares.share(shares.pixels_ms)},
+          {"objects", objects_json(world, largest_terms(std::move(objects), 20))}};
+}
+
+json unsolved_json(const World& world, const Subdivision& subdivision, const Placement& placement, const Selection& selection,
+                   const TimeModel& model, double budget_ms) {
+  std::map<std::uint32_t, double> residual_of;
+  for (const auto& shortfall : selection.summary.unmet) residual_of[shortfall.cpv] = shortfall.residual;
+  const double predicted_budget_ms = model.predicted_budget_ms(budget_ms);
+  json list = json::array();
+  for (std::uint32_t p = 0; p < placement.cpvs.size(); ++p) {
+    const PlacementCpv& placed = placement.cpvs[p];
+    if (placed.solved) continue;
+    const Cpv& cpv = subdivision.cpvs[p];
+    json entry = {{"cpv", p},
+                  {"region", region_name(subdivision, cpv)},
+                  {"bound_before_ms", placed.bound_before_ms},
+                  {"bound_after_ms", placed.bound_after_ms},
+                  {"blocking", objects_json(world, largest_terms(drawn_terms(subdivision, cpv, placement, placed), kNamedObjects))}};
+    const auto known = residual_of.find(p);
+    entry["residual_ms"] = known != residual_of.end() ? json(known->second) : json();
+    entry["lowest_budget_ms"] = known != residual_of.end() ? model.bound_ms(predicted_budget_ms + known->second) : placed.bound_after_ms;
+    list.push_back(std::move(entry));
+  }
+  return list;
+}
+
+std::uint64_t peak_rss_bytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
+}
+
+}  // namespace standin

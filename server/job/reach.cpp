@@ -1,0 +1,69 @@
+#include "server/job/reach.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace standin {
+namespace {
+
+// Thresholds are tried from this share of the worst bound downwards; a scene that can be brought below the last one is called reachable
+// there.
+constexpr double kFirstShare = 0.6;
+constexpr double kNextShare = 0.6;
+constexpr double kLeastShare = 0.03;
+
+Subdivision subdivide_at(const World& world, const TimeModel& model, double predicted_ms, const WorkBudget& budget) {
+  SubdivisionOptions options;
+  options.threads = world.threads;
+  options.predicted_budget_ms = predicted_ms;
+  return subdivide(world.scene, world.hierarchy.rank, world.view_space, world.visibility, model, world.camera, world.view_space_options,
+                   options, budget);
+}
+
+std::uint64_t leaf_regions(const Subdivision& subdivision, const ViewSpaceOptions& options) {
+  const auto per_face = std::uint64_t{1} << (2 * level_for_width(options.interval_deg));
+  return subdivision.cells.size() * kFaceCount * per_face;
+}
+
+}  // namespace
+
+double padded_quantile(std::vector<double> values, std::uint64_t total, double fill, double share) {
+  const auto rank = static_cast<std::uint64_t>(std::floor(share * static_cast<double>(total - 1)));
+  const std::uint64_t filled = total - values.size();
+  if (rank < filled) return fill;
+  const auto position = values.begin() + static_cast<std::ptrdiff_t>(rank - filled);
+  std::nth_element(values.begin(), position, values.end());
+  return *position;
+}
+
+ReachSummary summarise_reach(const World& world, const TimeModel& model, const SizeModel& sizes, const CandidateOptions& options,
+                             const WorkBudget& budget) {
+  ReachSummary summary;
+  Subdivision whole = subdivide_at(world, model, std::numeric_limits<double>::infinity(), budget);
+  const double worst_ms = whole.worst_predicted_ms;
+  summary.worst_bound_ms = model.bound_ms(worst_ms);
+  for (double share = kFirstShare; share > kLeastShare; share *= kNextShare) {
+    const double threshold_ms = share * worst_ms;
+    summary.subdivision = subdivide_at(world, model, threshold_ms, budget);
+    const Reach reach =
+        reachable_times(world.scene, world.hierarchy, summary.subdivision, model, sizes, world.camera, world.quality, options, budget);
+    summary.reachable_ms.clear();
+    for (const double predicted : reach.predicted_ms) summary.reachable_ms.push_back(std::max(predicted, threshold_ms));
+    const auto worst = std::ranges::max_element(reach.predicted_ms);
+    if (worst == reach.predicted_ms.end()) continue;
+    summary.blockers = reach.blockers[static_cast<std::size_t>(worst - reach.predicted_ms.begin())];
+    if (*worst > threshold_ms) break;
+  }
+  summary.regions = leaf_regions(summary.subdivision, world.view_space_options);
+  const double fill_ms = summary.reachable_ms.empty() ? worst_ms : *std::ranges::min_element(summary.reachable_ms);
+  const auto quantile = [&](double share) {
+    return model.bound_ms(padded_quantile(summary.reachable_ms, summary.regions, fill_ms, share));
+  };
+  summary.all_ms = quantile(1.0);
+  summary.p99_ms = quantile(0.99);
+  summary.p90_ms = quantile(0.90);
+  for (auto& value : summary.reachable_ms) value = model.bound_ms(value);
+  return summary;
+}
+
+}  // namespace standin

@@ -1,0 +1,41 @@
+// Selection, baking, and repair with what baking found (architecture.md: bake and repair).
+//
+// Selection works on estimated bytes and times. What it chose is baked, the real costs go back, once per impostor, and the selection goes
+// on from what it holds: CPVs that fell short get further candidates, and impostors that real bytes make redundant go. At most
+// `bake_rounds` rounds. The thesis bakes at each greedy step (5.7.3) for exact gains: but then bakes cannot run side by side, and most of
+// what the greedy picks along the way is deleted again in the end (a third to a half, measured).
+#pragma once
+
+#include <vector>
+
+#include "estimation/time_model.h"
+#include "placement/candidates/candidates.h"
+#include "placement/select/selection_problem.h"
+#include "placement/view_space/subdivision.h"
+#include "server/job/assemble.h"
+#include "server/job/world.h"
+
+namespace standin {
+
+struct BakeRound {
+  std::uint32_t baked = 0;       // in this round
+  std::uint32_t short_cpvs = 0;  // that estimates called solved and real costs do not
+  double estimated_bytes = 0.0;  // of what was chosen
+  double real_bytes = 0.0;
+};
+
+struct SelectedImpostors {
+  Selection selection;                               // of the last round
+  std::vector<Impostor> impostors;                   // in the order of selection.chosen
+  std::vector<BakedCandidate> baked;                 // the same order
+  std::vector<std::vector<std::uint32_t>> assigned;  // per CPV: indices into `impostors`, ascending
+  std::vector<BakeRound> rounds;
+  std::uint32_t atlas_pages = 0;
+  double page_switch_ms = 0.0;  // all pages, as every region that draws an impostor is charged
+};
+
+[[nodiscard]] SelectedImpostors select_and_bake(const World& world, const Subdivision& subdivision, const CandidateSet& candidates,
+                                                const TimeModel& model, double budget_ms, const JobSpec& spec, StageClock& clock,
+                                                const WorkBudget& budget);
+
+}  // namespace standin

@@ -1,0 +1,296 @@
+#include "server/pipeline.h"
+
+#include <cmath>
+#include <numeric>
+
+#include "placement/candidates/candidates.h"
+#include "placement/view_space/survey.h"
+#include "render/base/error.h"
+#include "render/image/image_io.h"
+#include "render/impostor/atlas.h"
+#include "render/impostor/impostor_glb.h"
+#include "server/files/atomic_file.h"
+#include "server/files/placement_json.h"
+#include "server/job/metrics.h"
+#include "server/job/reach.h"
+#include "server/job/select_and_bake.h"
+#include "server/job/target_device.h"
+#include "server/job/world.h"
+#include "server/report/pictures.h"
+#include "server/report/report.h"
+#include "server/verify/verify.h"
+#include "server/verify/verify_json.h"
+
+namespace standin {
+namespace {
+
+using nlohmann::json;
+
+// A scene whose lowest reachable budget is no lower than this share of its worst view is one that impostors cannot help.
+constexpr double kHelpfulShare = 0.98;
+
+struct Surveyed {
+  World world;
+  Target target;
+  CandidateOptions candidate_options;
+  SizeModel sizes;
+  ReachSummary reach;
+  Survey survey;
+};
+
+CandidateOptions candidate_options_of(const JobSpec& spec, int threads) {
+  CandidateOptions options;
+  options.apex_deg = spec.apex_deg;
+  options.direction_step_deg = spec.direction_step_deg;
+  options.shape = spec.cell_shape == "box" ? CellShape::kBox : CellShape::kShaft;
+  options.threads = threads;
+  return options;
+}
+
+Subdivision problem_views(const World& world, const TimeModel& model, double predicted_budget_ms, const WorkBudget& budget) {
+  SubdivisionOptions options;
+  options.threads = world.threads;
+  options.predicted_budget_ms = predicted_budget_ms;
+  return subdivide(world.scene, world.hierarchy.rank, world.view_space, world.visibility, model, world.camera, world.view_space_options,
+                   options, budget);
+}
+
+// What an impostor will weigh, from real bakes of this scene's own candidates (thesis 5.8.1).
+SizeModel fit_sizes(const Surveyed& job, const JobSpec& spec, const WorkBudget& budget) {
+  const World& world = job.world;
+  const TimeModel& model = job.target.model;
+  if (spec.size_bakes == 0) return default_size_model();
+  constexpr double kProbeShare = 0.6;  // enough slow regions for typical candidates
+  const double worst_ms = problem_views(world, model, std::numeric_limits<double>::infinity(), budget).worst_predicted_ms;
+  const Subdivision probe = problem_views(world, model, kProbeShare * worst_ms, budget);
+  const CandidateSet set = generate_candidates(world.scene, world.hierarchy, probe, model, default_size_model(), world.camera,
+                                               world.quality, job.candidate_options, budget);
+  if (set.candidates.empty()) return default_size_model();
+  return fit_size_model(world.scene, set.candidates, world.camera, world.quality, spec.size_bakes, spec.seed, world.threads, budget);
+}
+
+Surveyed survey_scene(const JobFiles& files, const JobSpec& spec, StageClock& clock, const WorkBudget& budget) {
+  Surveyed job;
+  job.target = read_target(files.target);
+  job.world = build_world(files.scene, spec, clock, budget);
+  job.candidate_options = candidate_options_of(spec, job.world.threads);
+  job.sizes = clock.run("size_model", [&] { return fit_sizes(job, spec, budget); });
+  clock.run("survey", [&] {
+    job.reach = summarise_reach(job.world, job.target.model, job.sizes, job.candidate_options, budget);
+    SurveyOptions options;
+    options.views = static_cast<std::uint32_t>(spec.survey_views);
+    options.seed = spec.seed;
+    options.threads = job.world.threads;
+    job.survey =
+        survey_views(job.world.scene, job.world.view_space, job.reach.subdivision, job.target.model, job.world.camera, options, budget);
+  });
+  return job;
+}
+
+std::string verdict(const Surveyed& job) {
+  if (job.reach.all_ms < kHelpfulShare * job.survey.worst_frame_ms)
+    return "impostors can help: every view can be brought under reachable_all_ms";
+  std::string sentence = "impostors cannot help the slowest views on this target: what remains there is near or light geometry, above all";
+  for (const auto object : job.reach.blockers) sentence += " " + job.world.scene.objects[object].name + ",";
+  sentence.back() = '.';
+  return sentence;
+}
+
+json survey_json(const Surveyed& job) {
+  const Survey& survey = job.survey;
+  return {{"worst_frame_ms", survey.worst_frame_ms},
+          {"p50_frame_ms", survey.p50_ms},
+          {"p90_frame_ms", survey.p90_ms},
+          {"p99_frame_ms", survey.p99_ms},
+          {"worst_bound_ms", job.reach.worst_bound_ms},
+          {"bound_over_sampled_p50", survey.looseness_p50},
+          {"bound_over_sampled_max", survey.looseness_max},
+          {"reachable_all_ms", job.reach.all_ms},
+          {"reachable_p99_ms", job.reach.p99_ms},
+          {"reachable_p90_ms", job.reach.p90_ms},
+          {"verdict", verdict(job)}};
+}
+
+json common_metrics(const Surveyed& job, const StageClock& clock) {
+  const World& world = job.world;
+  return {{"scene", {{"name", world.scene.name}, {"objects", world.scene.objects.size()}, {"triangles", world.scene.triangle_count()}}},
+          {"view_space", {{"why", world.view_space.why}, {"boxes", world.view_space.boxes.size()}}},
+          {"visibility",
+           {{"cells", world.visibility.cells.size()}, {"occlusion", world.occlusion}, {"missed_ray_share", world.missed_ray_share}}},
+          {"target",
+           {{"id", job.target.id},
+            {"coverage", job.target.model.coverage},
+            {"median_error", job.target.median_error},
+            {"p90_error", job.target.p90_error}}},
+          {"size_model", {{"bakes", job.sizes.bakes}, {"median_error", job.sizes.median_error}}},
+          {"survey", survey_json(job)},
+          {"stages_s", clock.seconds()},
+          {"left_out", clock.left_out()},
+          {"peak_rss_bytes", peak_rss_bytes()}};
+}
+
+std::string fingerprint(const char* kind, const Surveyed& job, const JobSpec& spec) {
+  return json({{"kind", kind}, {"scene", job.world.scene.sha256}, {"target", job.target.sha256}, {"spec", to_json(spec, true)}}).dump();
+}
+
+json select_metrics(const SelectedImpostors& selected, const Placement& placement) {
+  json rounds = json::array();
+  for (const auto& round : selected.rounds)
+    rounds.push_back({{"baked", round.baked},
+                      {"short_cpvs", round.short_cpvs},
+                      {"estimated_bytes", round.estimated_bytes},
+                      {"real_bytes", round.real_bytes}});
+  const SelectionSummary& summary = selected.selection.summary;
+  return {{"message", summary.message},         {"picked_by_greedy", summary.picked_by_greedy}, {"stalled", summary.stalled},
+          {"evaluations", summary.evaluations}, {"bytes_greedy", summary.bytes_greedy},         {"impostors", placement.impostors.size()},
+          {"rounds", std::move(rounds)}};
+}
+
+json memory_json(const Placement& placement, const ImpostorSet& set) {
+  std::uint64_t texture = 0, geometry = 0;
+  for (const auto& impostor : placement.impostors) {
+    texture += impostor.texture_bytes;
+    geometry += impostor.geometry_bytes;
+  }
+  return {{"texture_bytes", texture},
+          {"geometry_bytes", geometry},
+          {"total_bytes", texture + geometry},
+          {"atlas_padding_bytes", padding_bytes(set)}};
+}
+
+json bound_json(const SelectionSummary& summary) {
+  const double gap = summary.bytes > 0.0 ? (summary.bytes - summary.lower_bound_bytes) / summary.bytes : 0.0;
+  return {{"memory_lower_bound_bytes", summary.lower_bound_bytes},
+          {"gap_estimated", gap},
+          {"holds_for", "this candidate set, these CPVs and this time bound; bytes of candidates that were not baked are estimates"}};
+}
+
+json cpv_json(const Placement& placement) {
+  const auto solved = static_cast<std::uint64_t>(std::ranges::count_if(placement.cpvs, [](const auto& cpv) { return cpv.solved; }));
+  return {{"count", placement.cpvs.size()}, {"solved", solved}, {"unsolved", placement.cpvs.size() - solved}};
+}
+
+struct Placed {
+  Subdivision subdivision;
+  CandidateSet candidates;
+  SelectedImpostors selected;
+  Placement placement;
+  ImpostorSet set;
+  std::string glb;
+};
+
+Placed place_impostors(Surveyed& job, const JobSpec& spec, StageClock& clock, const WorkBudget& budget) {
+  const World& world = job.world;
+  const TimeModel& model = job.target.model;
+  Placed placed;
+  placed.subdivision =
+      clock.run("view_space", [&] { return problem_views(world, model, model.predicted_budget_ms(spec.budget_ms), budget); });
+  if (placed.subdivision.cpvs.empty())
+    clock.leave_out("candidates, select, bake", "no problem views: every region's bound is within the budget");
+  placed.candidates = clock.run("candidates", [&] {
+    return generate_candidates(world.scene, world.hierarchy, placed.subdivision, model, job.sizes, world.camera, world.quality,
+                               job.candidate_options, budget);
+  });
+  placed.selected = select_and_bake(world, placed.subdivision, placed.candidates, model, spec.budget_ms, spec, clock, budget);
+  clock.run("assemble", [&] {
+    std::vector<std::uint32_t> kept;
+    placed.placement = assemble_placement(placed.subdivision, world.view_space, placed.selected.baked, placed.selected.assigned, model,
+                                          world.camera, spec.budget_ms, placed.selected.page_switch_ms, kept);
+    std::vector<Impostor> impostors;
+    for (const auto old : kept) impostors.push_back(std::move(placed.selected.impostors[old]));
+    placed.set = pack_atlas(std::move(impostors));
+    placed.glb = encode_impostor_glb(placed.set);
+  });
+  return placed;
+}
+
+VerifyResult verify(const Surveyed& job, const Placed& placed, const JobSpec& spec, const WorkBudget& budget) {
+  const World& world = job.world;
+  const double alpha_rad = world.quality.alpha_scale * world.camera.pixel_angle_rad();
+  const VerifyInput input{world.scene, job.target, placed.placement, world.view_space, world.camera, placed.glb, spec.budget_ms, alpha_rad};
+  VerifyOptions options;
+  options.views = spec.verify_views;
+  options.seed = spec.seed + 1;  // not the views the survey saw
+  options.threads = world.threads;
+  return verify_placement(input, device_kind(job.target), device_matches(job.target), options, budget);
+}
+
+PlacementFile placement_file(const Surveyed& job, const Placed& placed, const JobSpec& spec) {
+  return {spec,
+          job.world.scene.name,
+          job.world.scene.sha256,
+          job.target.id,
+          job.target.sha256,
+          job.target.model.coverage,
+          job.world.camera,
+          job.world.view_space,
+          placed.selected.atlas_pages,
+          placed.placement};
+}
+
+// Where the inputs lay: outside placement.json, which carries no path.
+std::string inputs_json(const JobFiles& files) {
+  return json({{"scene", std::filesystem::absolute(files.scene).string()}, {"target", std::filesystem::absolute(files.target).string()}})
+      .dump();
+}
+
+}  // namespace
+
+JobOutcome run_survey(const JobFiles& files, const JobSpec& spec, const WorkBudget& budget) {
+  StageClock clock(budget);
+  const Surveyed job = survey_scene(files, spec, clock, budget);
+  JobOutcome outcome;
+  outcome.metrics = common_metrics(job, clock);
+  outcome.metrics["causes"] = causes_json(job.world, job.reach.subdivision, job.target.model);
+  outcome.metrics["heat_map"] = heat_map_json(job.reach.subdivision, nullptr, job.target.model);
+  if (spec.budget_ms > 0.0) outcome.metrics["budget_ms"] = spec.budget_ms;
+  if (files.folder.empty()) return outcome;
+  OutputFolder folder(files.folder, fingerprint("survey", job, spec));
+  folder.write("metrics.json", outcome.metrics.dump(1));
+  folder.write("report.html", make_report(outcome.metrics, nullptr, {}));
+  folder.commit();
+  return outcome;
+}
+
+JobOutcome run_place(const JobFiles& files, const JobSpec& spec, const WorkBudget& budget) {
+  if (!(spec.budget_ms > 0.0)) throw Failure(ErrorWord::kBadUsage, "--budget-ms " + std::to_string(spec.budget_ms) + " violates: > 0");
+  StageClock clock(budget);
+  Surveyed job = survey_scene(files, spec, clock, budget);
+  OutputFolder folder(files.folder, fingerprint("place", job, spec));
+  const Placed placed = place_impostors(job, spec, clock, budget);
+  const VerifyResult verified = clock.run("verify", [&] { return verify(job, placed, spec, budget); });
+
+  const json placement = placement_to_json(placement_file(job, placed, spec), job.world.scene);
+  JobOutcome outcome;
+  outcome.metrics = common_metrics(job, clock);
+  json& metrics = outcome.metrics;
+  metrics["budget_ms"] = spec.budget_ms;
+  metrics["cpv"] = cpv_json(placed.placement);
+  const CandidateSet& candidates = placed.candidates;
+  metrics["candidates"] = {{"generated", candidates.generated},
+                           {"kept", candidates.candidates.size()},
+                           {"pruned", candidates.generated - candidates.candidates.size()},
+                           {"duplicates", candidates.duplicates},
+                           {"impossible", candidates.impossible},
+                           {"hopeless", candidates.hopeless}};
+  metrics["impostors"] = {{"count", placed.placement.impostors.size()}};
+  metrics["select"] = select_metrics(placed.selected, placed.placement);
+  metrics["memory"] = memory_json(placed.placement, placed.set);
+  metrics["bound"] = bound_json(placed.selected.selection.summary);
+  metrics["verify"] = verify_json(verified);
+  metrics["image"] = image_json(verified);
+  metrics["heat_map"] = heat_map_json(placed.subdivision, &placed.placement, job.target.model);
+  metrics["causes"] = causes_json(job.world, placed.subdivision, job.target.model);
+  metrics["unsolved"] =
+      unsolved_json(job.world, placed.subdivision, placed.placement, placed.selected.selection, job.target.model, spec.budget_ms);
+  folder.write(kInputsFile, inputs_json(files));
+  folder.write("placement.json", placement.dump());
+  folder.write("impostors.glb", placed.glb);
+  folder.write("metrics.json", metrics.dump(1));
+  folder.write("report.html", make_report(metrics, placement, report_pictures(verified, placed.set)));
+  folder.commit();
+  outcome.aim_met = metrics["cpv"]["unsolved"] == 0;
+  return outcome;
+}
+
+}  // namespace standin

@@ -1,0 +1,34 @@
+// The order of the stages, and nothing else: the page to read first.
+//
+//   scene ─▶ view space ─▶ visible sets ─▶ survey ─▶ problem views ─▶ candidates ─▶ selection ⇄ baking ─▶ placement ─▶ verification ─▶
+//   files
+//
+// The command line and the service run these same functions.
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "render/base/work.h"
+#include "server/job/job_spec.h"
+
+namespace standin {
+
+struct JobFiles {
+  std::filesystem::path scene;
+  std::filesystem::path target;
+  std::filesystem::path folder;  // result folder; survey: may be empty (nothing is written)
+};
+
+/// Hidden file of a result folder: the paths of its scene and target, for `check` and `verify`.
+inline constexpr const char* kInputsFile = ".standin-inputs.json";
+
+struct JobOutcome {
+  nlohmann::json metrics;
+  bool aim_met = true;  // false: some CPV has no solution
+};
+
+[[nodiscard]] JobOutcome run_survey(const JobFiles& files, const JobSpec& spec, const WorkBudget& budget);
+[[nodiscard]] JobOutcome run_place(const JobFiles& files, const JobSpec& spec, const WorkBudget& budget);
+
+}  // namespace standin

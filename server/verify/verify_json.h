@@ -1,0 +1,15 @@
+// What verification found, as metrics.json and verify.json carry it (units in the key names; what was not measured is null).
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "server/verify/verify.h"
+
+namespace standin {
+
+/// "verify": counts, percentiles before and after, and every frame.
+[[nodiscard]] nlohmann::json verify_json(const VerifyResult& result);
+/// "image": what the pictures and the rays said.
+[[nodiscard]] nlohmann::json image_json(const VerifyResult& result);
+
+}  // namespace standin
