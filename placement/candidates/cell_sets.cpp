@@ -1,0 +1,162 @@
+#include "placement/candidates/cell_sets.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numbers>
+#include <string>
+
+#include "render/base/error.h"
+
+namespace standin {
+namespace {
+
+constexpr double kRadPerDeg = std::numbers::pi / 180.0;
+
+/// A cell that lies in a pyramid of the grid.
+struct Held {
+  std::uint32_t pyramid = 0;  // direction * apex count + apex
+  double near_m = 0.0;        // least distance of the cell along the axis
+  std::uint32_t cell = 0;
+};
+
+/// What a cell needs of a pyramid about `apex` with the axes of `frame`.
+struct Need {
+  double tan_half = 0.0;
+  double near_m = std::numeric_limits<double>::infinity();
+};
+
+Need need_of(const Box& cell, const Vec3& apex, const Shaft& frame) {
+  Need need;
+  for (int i = 0; i < 8; ++i) {
+    const Vec3 from_apex = cell.corner(i) - apex;
+    const double along_m = glm::dot(from_apex, frame.axis);
+    if (along_m <= 0.0) return {std::numeric_limits<double>::infinity(), 0.0};
+    const double aside_m = std::max(std::abs(glm::dot(from_apex, frame.right)), std::abs(glm::dot(from_apex, frame.up)));
+    need.tan_half = std::max(need.tan_half, aside_m / along_m);
+    need.near_m = std::min(need.near_m, along_m);
+  }
+  return need;
+}
+
+/// Far cells first within each pyramid.
+std::vector<Held> held_cells(const Vec3& apex, std::span<const std::uint32_t> cells, const Subdivision& subdivision,
+                             const DirectionGrid& grid, std::span<const double> tan_half) {
+  const double widest = *std::max_element(tan_half.begin(), tan_half.end());
+  const double reach_rad = std::atan(std::numbers::sqrt2 * widest);  // from the axis to the pyramid's edge
+  std::vector<Held> held;
+  std::vector<std::uint32_t> directions;
+  for (const std::uint32_t cell : cells) {
+    const Box& box = subdivision.cells[cell].box;
+    const Vec3 towards = box.centre() - apex;
+    const double distance_m = glm::length(towards);
+    if (distance_m <= 0.0) continue;
+    directions.clear();
+    grid.append_near(towards / distance_m, reach_rad, directions);
+    for (const std::uint32_t direction : directions) {
+      const Need need = need_of(box, apex, grid.frame(direction));
+      for (std::uint32_t a = 0; a < tan_half.size(); ++a)
+        if (need.tan_half <= tan_half[a]) held.push_back({direction * static_cast<std::uint32_t>(tan_half.size()) + a, need.near_m, cell});
+    }
+  }
+  std::sort(held.begin(), held.end(), [](const Held& a, const Held& b) {
+    if (a.pyramid != b.pyramid) return a.pyramid < b.pyramid;
+    return a.near_m != b.near_m ? a.near_m > b.near_m : a.cell < b.cell;
+  });
+  return held;
+}
+
+void append_set(std::span<const Held> held, std::vector<CellSet>& sets) {
+  if (held.size() < 2) return;
+  CellSet set;
+  for (const Held& h : held) set.push_back(h.cell);
+  std::sort(set.begin(), set.end());
+  sets.push_back(std::move(set));
+}
+
+/// All cells of one pyramid, then those beyond each doubling of the cluster's diagonal.
+void append_nested(std::span<const Held> held, double diagonal_m, std::vector<CellSet>& sets) {
+  append_set(held, sets);
+  const double unit_m = std::max(diagonal_m, 1e-6);
+  while (held.size() >= 2) {
+    const double octave = std::floor(std::log2(held.back().near_m / unit_m));
+    const double least_m = unit_m * std::exp2(octave + 1.0);
+    auto beyond = held.size();
+    while (beyond > 0 && held[beyond - 1].near_m < least_m) --beyond;
+    if (beyond == held.size()) return;  // rounding left nothing to drop
+    held = held.first(beyond);
+    append_set(held, sets);
+  }
+}
+
+}  // namespace
+
+DirectionGrid::DirectionGrid(double step_deg) {
+  if (!(step_deg >= 1.0 && step_deg <= 90.0))
+    throw Failure(ErrorWord::kBadUsage, "direction_step_deg = " + std::to_string(step_deg) + " violates 1 <= direction_step_deg <= 90");
+  rows_ = static_cast<int>(std::lround(180.0 / step_deg)) + 1;
+  columns_ = static_cast<int>(std::lround(360.0 / step_deg));
+  for (int row = 0; row < rows_; ++row) {
+    const double elevation = std::numbers::pi * (static_cast<double>(row) / (rows_ - 1) - 0.5);
+    for (int column = 0; column < columns_; ++column) {
+      const double azimuth = 2.0 * std::numbers::pi * column / columns_;
+      const Vec3 axis(std::cos(elevation) * std::cos(azimuth), std::sin(elevation), std::cos(elevation) * std::sin(azimuth));
+      frames_.push_back(shaft_frame(Vec3(0.0), axis));
+    }
+  }
+}
+
+void DirectionGrid::append_near(const Vec3& unit, double angle_rad, std::vector<std::uint32_t>& directions) const {
+  const double row_step = std::numbers::pi / (rows_ - 1);
+  const double elevation = std::asin(std::clamp(unit.y, -1.0, 1.0));
+  const int first_row = std::max(0, static_cast<int>(std::floor((elevation - angle_rad + 0.5 * std::numbers::pi) / row_step)));
+  const int last_row = std::min(rows_ - 1, static_cast<int>(std::ceil((elevation + angle_rad + 0.5 * std::numbers::pi) / row_step)));
+
+  // A cap that does not hold a pole spans asin(sin(angle) / cos(elevation)) in azimuth to either side.
+  const double column_step = 2.0 * std::numbers::pi / columns_;
+  int first_column = 0;
+  int last_column = columns_ - 1;
+  if (std::abs(elevation) + angle_rad < 0.5 * std::numbers::pi) {
+    const double half_span = std::asin(std::min(1.0, std::sin(angle_rad) / std::cos(elevation)));
+    const double azimuth = std::atan2(unit.z, unit.x);
+    first_column = static_cast<int>(std::floor((azimuth - half_span) / column_step));
+    last_column = std::min(static_cast<int>(std::ceil((azimuth + half_span) / column_step)), first_column + columns_ - 1);
+  }
+  for (int row = first_row; row <= last_row; ++row) {
+    // All azimuths of a pole are one direction.
+    const bool pole = row == 0 || row == rows_ - 1;
+    for (int column = pole ? 0 : first_column; column <= (pole ? 0 : last_column); ++column)
+      directions.push_back(static_cast<std::uint32_t>(row * columns_ + ((column % columns_) + columns_) % columns_));
+  }
+}
+
+std::vector<CellSet> shaft_cell_sets(const Box& cluster, std::span<const std::uint32_t> cells, const Subdivision& subdivision,
+                                     const DirectionGrid& grid, std::span<const double> apex_deg) {
+  std::vector<CellSet> sets;
+  if (cells.size() < 2 || apex_deg.empty()) return sets;
+  std::vector<double> tan_half;
+  for (const double apex : apex_deg) tan_half.push_back(std::tan(0.5 * apex * kRadPerDeg));
+  const auto held = held_cells(cluster.centre(), cells, subdivision, grid, tan_half);
+  for (std::size_t begin = 0; begin < held.size();) {
+    std::size_t end = begin;
+    while (end < held.size() && held[end].pyramid == held[begin].pyramid) ++end;
+    append_nested(std::span(held).subspan(begin, end - begin), cluster.diagonal(), sets);
+    begin = end;
+  }
+  return sets;
+}
+
+std::vector<CellSet> box_cell_sets(std::span<const std::uint32_t> cells, const Subdivision& subdivision) {
+  std::map<CellKey, CellSet> below;
+  for (const std::uint32_t cell : cells) {
+    CellKey key = subdivision.cells[cell].key;
+    for (below[key].push_back(cell); key.level > 0;) below[key = key.parent()].push_back(cell);
+  }
+  std::vector<CellSet> sets;
+  for (auto& [key, set] : below)
+    if (set.size() >= 2) sets.push_back(std::move(set));
+  return sets;
+}
+
+}  // namespace standin

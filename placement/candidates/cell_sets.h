@@ -1,0 +1,40 @@
+// Which sets of cells a cluster's candidates may serve (thesis 5.6).
+//
+// Shafts: a pyramid about the cluster's centre in one of the grid's directions, with one of the apex angles, holds some cells; minimum
+// distances of 1, 2, 4 .. box diagonals give nested subsets, the far ones. We go from the cells to the directions that can hold them, so
+// the blind product of directions and distances is never formed. Boxes: the cells below each node of the view space's dyadic grid.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "placement/candidates/candidates.h"
+
+namespace standin {
+
+using CellSet = std::vector<std::uint32_t>;  // ascending
+
+/// Directions (azimuth, elevation) in steps of an angle, both poles included.
+class DirectionGrid {
+ public:
+  explicit DirectionGrid(double step_deg);
+
+  [[nodiscard]] std::size_t size() const { return frames_.size(); }
+  /// Frame of one direction: axis, right, up; apex and aperture are left open.
+  [[nodiscard]] const Shaft& frame(std::uint32_t direction) const { return frames_[direction]; }
+  /// Appends all directions within `angle_rad` of a unit vector (and a few more).
+  void append_near(const Vec3& unit, double angle_rad, std::vector<std::uint32_t>& directions) const;
+
+ private:
+  int rows_ = 0;     // elevations from -90 to 90 degrees
+  int columns_ = 0;  // azimuths
+  std::vector<Shaft> frames_;
+};
+
+/// Every set of two or more of `cells` that one view cell holds; may repeat. `cluster`: bounds of the node.
+[[nodiscard]] std::vector<CellSet> shaft_cell_sets(const Box& cluster, std::span<const std::uint32_t> cells, const Subdivision& subdivision,
+                                                   const DirectionGrid& grid, std::span<const double> apex_deg);
+[[nodiscard]] std::vector<CellSet> box_cell_sets(std::span<const std::uint32_t> cells, const Subdivision& subdivision);
+
+}  // namespace standin

@@ -1,0 +1,64 @@
+#include "placement/candidates/draft.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "placement/candidates/size_model.h"
+#include "placement/candidates/tight_shaft.h"
+
+namespace standin {
+namespace {
+
+std::vector<std::uint32_t> visible_objects(const DraftContext& context, std::uint32_t node, const CellSet& cells) {
+  std::vector<std::uint32_t> objects;
+  for (const std::uint32_t cell : cells)
+    for (const std::uint32_t rank : context.index.visible_in(cell, node)) objects.push_back(context.hierarchy.order[rank]);
+  std::sort(objects.begin(), objects.end());
+  objects.erase(std::unique(objects.begin(), objects.end()), objects.end());
+  return objects;
+}
+
+std::optional<ViewCell> view_cell_around(const DraftContext& context, const Box& object_bounds, const CellSet& cells) {
+  std::vector<Box> boxes;
+  Box all;
+  for (const std::uint32_t cell : cells) {
+    boxes.push_back(context.subdivision.cells[cell].box);
+    all.extend(boxes.back());
+    if (distance(boxes.back(), object_bounds) <= 0.0) return std::nullopt;
+  }
+  if (context.shape == CellShape::kBox) return all;
+  return tight_shaft(object_bounds.centre(), boxes);
+}
+
+}  // namespace
+
+std::optional<Draft> draft_candidate(const DraftContext& context, std::uint32_t node, const CellSet& cells) {
+  std::vector<std::uint32_t> objects = visible_objects(context, node, cells);
+  Box bounds;
+  for (const std::uint32_t object : objects) bounds.extend(context.scene.objects[object].bounds);
+  const auto view_cell = view_cell_around(context, bounds, cells);
+  if (!view_cell) return std::nullopt;
+  const ImpostorSketch sketch = sketch_impostor(bounds, *view_cell, context.camera, context.quality);
+  if (!std::isfinite(sketch.layers)) return std::nullopt;
+
+  const SizeEstimate size = estimate_size(context.sizes, size_input(context.scene, objects, bounds, *view_cell, sketch));
+  Draft draft;
+  draft.candidate = {node, *view_cell, cells, std::move(objects), size.bytes, {}};
+  // Texels are chosen so that the nearest layer is not magnified from the nearest point of the view cell.
+  draft.candidate.cost = {size.quads, size.bytes / 4.0, context.quality.texel_scale / context.camera.focal_px()};
+  draft.cost = context.model.cost(impostor_features_bound(draft.candidate.cost, context.camera));
+  return draft;
+}
+
+bool belongs_to_child(const DraftContext& context, std::uint32_t node, const CellSet& cells) {
+  const HierarchyNode& parent = context.hierarchy.nodes[node];
+  if (parent.left < 0) return false;
+  const auto left = static_cast<std::uint32_t>(parent.left);
+  const auto right = static_cast<std::uint32_t>(parent.right);
+  const auto none_in = [&](std::uint32_t child) {
+    return std::all_of(cells.begin(), cells.end(), [&](std::uint32_t cell) { return context.index.visible_in(cell, child).empty(); });
+  };
+  return none_in(left) || none_in(right);
+}
+
+}  // namespace standin

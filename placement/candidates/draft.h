@@ -1,0 +1,45 @@
+// One candidate from a cluster and the cells it is to serve.
+//
+// The impostor stands for the node's objects that are visible from a served cell, no others: what is never seen needs no texels. Its shaft
+// starts at their centre and is tight around the cells (tight_shaft.h). A candidate and the reachable times come from the same draft, so
+// what reachable_times() promises is what generate_candidates() offers.
+#pragma once
+
+#include <optional>
+
+#include "placement/candidates/candidates.h"
+#include "placement/candidates/cell_index.h"
+#include "placement/candidates/cell_sets.h"
+
+namespace standin {
+
+/// All that drafting needs; nothing is owned.
+struct DraftContext {
+  const Scene& scene;
+  const Hierarchy& hierarchy;
+  const Subdivision& subdivision;
+  const CellIndex& index;
+  const TimeModel& model;
+  const SizeModel& sizes;
+  const Camera& camera;
+  const BakeQuality& quality;
+  CellShape shape;
+};
+
+struct Draft {
+  Candidate candidate;
+  Cost cost;  // of drawing it
+};
+
+/// Predicted milliseconds in the linear form of a CPV.
+[[nodiscard]] inline double in_form(const Cost& cost, const Cpv& cpv) {
+  return cpv.pixels_capped ? cost.fixed_ms : cost.fixed_ms + cost.pixel_ms;
+}
+
+/// `cells`: ascending, at least one, each sees some object of the node. Nothing when no impostor is possible.
+[[nodiscard]] std::optional<Draft> draft_candidate(const DraftContext& context, std::uint32_t node, const CellSet& cells);
+
+/// Whether all objects visible from the cells lie in one child of the node: then the child's candidate is the same.
+[[nodiscard]] bool belongs_to_child(const DraftContext& context, std::uint32_t node, const CellSet& cells);
+
+}  // namespace standin

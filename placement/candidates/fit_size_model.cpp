@@ -1,0 +1,59 @@
+// A size model from real bakes of the scene at hand: the estimator moves results 10x, so it is calibrated before anything is tuned
+// (simulation.md 8.10).
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <optional>
+
+#include "placement/candidates/size_model.h"
+#include "render/base/parallel.h"
+#include "render/base/rng.h"
+
+namespace standin {
+namespace {
+
+/// One candidate from each of `count` equal strata by estimated bytes.
+std::vector<std::uint32_t> spread(const std::vector<Candidate>& candidates, std::uint32_t count, std::uint64_t seed) {
+  std::vector<std::uint32_t> by_bytes(candidates.size());
+  std::iota(by_bytes.begin(), by_bytes.end(), 0U);
+  std::stable_sort(by_bytes.begin(), by_bytes.end(),
+                   [&](std::uint32_t a, std::uint32_t b) { return candidates[a].bytes < candidates[b].bytes; });
+  Rng rng(seed);
+  std::vector<std::uint32_t> chosen;
+  const std::size_t strata = std::min<std::size_t>(count, candidates.size());
+  for (std::size_t i = 0; i < strata; ++i) {
+    const std::size_t begin = i * candidates.size() / strata;
+    const std::size_t end = (i + 1) * candidates.size() / strata;
+    chosen.push_back(by_bytes[begin + rng.below(end - begin)]);
+  }
+  return chosen;
+}
+
+/// Nothing where the sketch was too hopeful, or where the bake shows nothing.
+std::optional<SizeSample> bake_sample(const Scene& scene, const Candidate& candidate, const Camera& camera, const BakeQuality& quality,
+                                      const WorkBudget& budget) {
+  Box bounds;
+  for (const std::uint32_t object : candidate.objects) bounds.extend(scene.objects[object].bounds);
+  const ImpostorSketch sketch = sketch_impostor(bounds, candidate.view_cell, camera, quality);
+  if (!std::isfinite(sketch.layers) || !plan_impostor(bounds, candidate.view_cell, camera, quality).possible) return std::nullopt;
+  const Impostor impostor = bake_layered(scene, {candidate.objects, candidate.view_cell}, camera, quality, budget);
+  if (impostor.quads.empty() || impostor.texels.empty()) return std::nullopt;
+  return SizeSample{size_input(scene, candidate.objects, bounds, candidate.view_cell, sketch),
+                    {static_cast<double>(impostor.texels.size()), static_cast<double>(impostor.quads.size())}};
+}
+
+}  // namespace
+
+SizeModel fit_size_model(const Scene& scene, const std::vector<Candidate>& candidates, const Camera& camera, const BakeQuality& quality,
+                         std::uint32_t count, std::uint64_t seed, int threads, const WorkBudget& budget) {
+  const auto chosen = spread(candidates, count, seed);
+  std::vector<std::optional<SizeSample>> baked(chosen.size());
+  parallel_for(chosen.size(), threads, budget,
+               [&](std::size_t i) { baked[i] = bake_sample(scene, candidates[chosen[i]], camera, quality, budget); });
+  std::vector<SizeSample> samples;
+  for (const auto& sample : baked)
+    if (sample) samples.push_back(*sample);
+  return fit_sizes(samples);
+}
+
+}  // namespace standin

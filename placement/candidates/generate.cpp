@@ -1,0 +1,128 @@
+// Candidates of every node, node by node and independent of each other.
+#include <algorithm>
+#include <iterator>
+
+#include "placement/candidates/draft.h"
+#include "render/base/parallel.h"
+
+namespace standin {
+namespace {
+
+/// A cell that can do with an impostor of the node: its own tight one is possible and gains something.
+struct UsefulCell {
+  std::uint32_t cell = 0;
+  std::vector<double> terms_ms;  // of the node's objects, per CPV of the cell
+};
+
+class NodeCandidates {
+ public:
+  NodeCandidates(const DraftContext& context, std::uint32_t node) : context_(context), node_(node) {}
+
+  CandidateSet generate(const DirectionGrid& grid, const CandidateOptions& options) {
+    serve_single_cells();
+    for (const CellSet& cells : cell_sets(grid, options)) serve(cells);
+    return std::move(set_);
+  }
+
+ private:
+  // A larger view cell around one of these costs more than the tight one: cells that fail here serve in no set.
+  void serve_single_cells() {
+    for (const std::uint32_t cell : context_.index.cells_seeing(node_)) {
+      ++set_.generated;
+      auto draft = draft_candidate(context_, node_, {cell});
+      if (!draft) {
+        ++set_.impossible;
+        continue;
+      }
+      UsefulCell useful{cell, {}};
+      const IdRange cpvs = context_.index.cpvs(cell);
+      for (std::uint32_t p = cpvs.begin; p < cpvs.end; ++p)
+        useful.terms_ms.push_back(context_.index.terms_ms(context_.subdivision.cpvs[p], node_));
+      if (!gains(useful, draft->cost)) {
+        ++set_.hopeless;
+        continue;
+      }
+      useful_.push_back(std::move(useful));
+      keep(std::move(draft->candidate));
+    }
+  }
+
+  std::vector<CellSet> cell_sets(const DirectionGrid& grid, const CandidateOptions& options) {
+    CellSet cells;
+    for (const UsefulCell& useful : useful_) cells.push_back(useful.cell);
+    auto sets = options.shape == CellShape::kBox
+                    ? box_cell_sets(cells, context_.subdivision)
+                    : shaft_cell_sets(context_.hierarchy.nodes[node_].bounds, cells, context_.subdivision, grid, options.apex_deg);
+    const std::size_t before = sets.size();
+    std::sort(sets.begin(), sets.end());
+    sets.erase(std::unique(sets.begin(), sets.end()), sets.end());
+    set_.generated += before;
+    set_.duplicates += before - sets.size();
+    return sets;
+  }
+
+  void serve(const CellSet& cells) {
+    auto draft = draft_candidate(context_, node_, cells);
+    if (!draft)
+      ++set_.impossible;
+    else if (!gains_anywhere(cells, draft->cost))
+      ++set_.hopeless;
+    else
+      keep(std::move(draft->candidate));
+  }
+
+  void keep(Candidate candidate) {
+    if (belongs_to_child(context_, node_, candidate.cells))
+      ++set_.duplicates;
+    else
+      set_.candidates.push_back(std::move(candidate));
+  }
+
+  [[nodiscard]] bool gains(const UsefulCell& useful, const Cost& cost) const {
+    const std::uint32_t first = context_.index.cpvs(useful.cell).begin;
+    for (std::uint32_t i = 0; i < useful.terms_ms.size(); ++i)
+      if (useful.terms_ms[i] > in_form(cost, context_.subdivision.cpvs[first + i])) return true;
+    return false;
+  }
+
+  [[nodiscard]] bool gains_anywhere(const CellSet& cells, const Cost& cost) const {
+    auto useful = useful_.begin();
+    for (const std::uint32_t cell : cells) {  // both ascend
+      while (useful->cell < cell) ++useful;
+      if (gains(*useful, cost)) return true;
+    }
+    return false;
+  }
+
+  const DraftContext& context_;
+  std::uint32_t node_;
+  std::vector<UsefulCell> useful_;  // ascending cells
+  CandidateSet set_;
+};
+
+}  // namespace
+
+CandidateSet generate_candidates(const Scene& scene, const Hierarchy& hierarchy, const Subdivision& subdivision, const TimeModel& model,
+                                 const SizeModel& sizes, const Camera& camera, const BakeQuality& quality, const CandidateOptions& options,
+                                 const WorkBudget& budget) {
+  const CellIndex index(hierarchy, subdivision);
+  const DirectionGrid grid(options.direction_step_deg);
+  const DraftContext context{scene, hierarchy, subdivision, index, model, sizes, camera, quality, options.shape};
+  std::vector<CandidateSet> of_node(hierarchy.nodes.size());
+  parallel_for(of_node.size(), options.threads, budget, [&](std::size_t node) {
+    of_node[node] = NodeCandidates(context, static_cast<std::uint32_t>(node)).generate(grid, options);
+  });
+
+  CandidateSet all;
+  for (CandidateSet& set : of_node) {
+    all.generated += set.generated;
+    all.duplicates += set.duplicates;
+    all.impossible += set.impossible;
+    all.hopeless += set.hopeless;
+    std::move(set.candidates.begin(), set.candidates.end(), std::back_inserter(all.candidates));
+    set = {};
+  }
+  return all;
+}
+
+}  // namespace standin
