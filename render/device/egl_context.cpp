@@ -52,16 +52,15 @@ class EglContext final : public Context {
     if (context_ == EGL_NO_CONTEXT) unavailable("no OpenGL 4.5 core context");
   }
   ~EglContext() override {
-    if (egl().get_current_context() == context_) egl().make_current(egl().display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+    if (egl().get_current_context() == context_) bind(EGL_NO_CONTEXT);
     egl().destroy_context(egl().display, context_);
   }
   EglContext(const EglContext&) = delete;
   EglContext& operator=(const EglContext&) = delete;
 
   void make_current() override {
-    // The bound API belongs to the thread, and eglMakeCurrent releases the current context of that API only.
-    if (egl().bind_api(EGL_OPENGL_API) != EGL_TRUE ||
-        egl().make_current(egl().display, EGL_NO_SURFACE, EGL_NO_SURFACE, context_) != EGL_TRUE)
+    // OSMesa shares Mesa's per-thread current context, but EGL does not notice: released first, the context is really bound again.
+    if (egl().bind_api(EGL_OPENGL_API) != EGL_TRUE || !bind(EGL_NO_CONTEXT) || !bind(context_))
       unavailable("the context cannot be made current");
   }
   [[nodiscard]] void* proc(const char* name) const override { return reinterpret_cast<void*>(egl().get_proc_address(name)); }
@@ -70,6 +69,8 @@ class EglContext final : public Context {
   [[nodiscard]] std::string version() const override { return gl_string(*this, GL_VERSION); }
 
  private:
+  static bool bind(EGLContext context) { return egl().make_current(egl().display, EGL_NO_SURFACE, EGL_NO_SURFACE, context) == EGL_TRUE; }
+
   EGLContext context_ = EGL_NO_CONTEXT;
 };
 
