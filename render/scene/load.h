@@ -1,12 +1,16 @@
 // From a scene file to a Scene.
 //
-// glTF/GLB is read through tinygltf with our own bounds checks (fast: about a second for 10 M triangles), all else through Assimp.
-// A URI inside a scene never leaves the scene's folder; required extensions that are not read are refused by name;
-// NaN, Inf and out-of-range indices are dropped and counted in Scene::notes, or refused when nothing is left.
+// glTF/GLB has a reader of its own (about a second for 10 M triangles): its JSON is parsed by nlohmann-json, and every byte range is
+// checked before it is read. tinygltf would open any URI, copy the binary chunk and crash on some malformed files, so that nothing but a
+// JSON parser would be left of it behind our own checks. All other formats go through Assimp.
+//
+// A URI inside a scene never leaves the scene's folder; required extensions that are not read are refused by name; NaN, Inf and
+// out-of-range indices are dropped and counted in Scene::notes, or refused when nothing is left.
 #pragma once
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "render/scene/scene.h"
 
@@ -25,6 +29,7 @@ struct LoadOptions {
   std::uint64_t split_triangles = 100000;  // an object with more is split by a kd tree (thesis 1.6); 0: never
   double split_extent = 0.125;             // nor may one be longer than this share of the scene's diagonal; 0: any length
   std::uint64_t max_triangles = 200'000'000;
+  std::vector<std::filesystem::path> texture_folders;  // where else textures may be found by their file name; not for glTF
 };
 
 /// Throws Failure (kFileMissing, kFileBroken, kUriForbidden, kExtensionUnknown, kSceneEmpty).

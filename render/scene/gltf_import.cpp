@@ -1,0 +1,301 @@
+// glTF 2.0: the node tree to objects, primitives to meshes.
+
+#include <cstring>
+#include <glm/gtc/quaternion.hpp>
+#include <glm/gtc/type_ptr.hpp>
+#include <set>
+
+#include "render/base/error.h"
+#include "render/scene/gltf_file.h"
+#include "render/scene/gltf_materials.h"
+#include "render/scene/import.h"
+
+namespace standin {
+namespace {
+
+using Kind = LoadNote::Kind;
+
+const std::set<std::string> kExtensionsRead{
+    "EXT_mesh_gpu_instancing", "EXT_meshopt_compression", "EXT_texture_webp",     "KHR_materials_pbrSpecularGlossiness",
+    "KHR_materials_unlit",     "KHR_mesh_quantization",   "KHR_texture_transform"};
+
+enum class Mode : std::uint64_t { kTriangles = 4, kStrip = 5, kFan = 6 };
+
+// Strips and fans as separate triangles of the same orientation.
+std::vector<std::uint32_t> separate(const std::vector<std::uint32_t>& in, Mode mode) {
+  std::vector<std::uint32_t> out;
+  for (std::size_t i = 0; i + 2 < in.size(); ++i) {
+    const std::size_t odd = i % 2;
+    if (mode == Mode::kFan) {
+      out.insert(out.end(), {in[i + 1], in[i + 2], in[0]});
+    } else {
+      out.insert(out.end(), {in[i], in[i + 1 + odd], in[i + 2 - odd]});
+    }
+  }
+  return out;
+}
+
+Mat4 placed(const Vec3& translation, const glm::dquat& rotation, const Vec3& scale) {
+  Mat4 matrix = glm::mat4_cast(rotation);
+  for (int axis = 0; axis < 3; ++axis) matrix[axis] *= scale[axis];
+  matrix[3] = Vec4(translation, 1.0);
+  return matrix;
+}
+
+glm::dquat unit_quaternion(double x, double y, double z, double w) {
+  const glm::dquat q(w, x, y, z);
+  const double length = glm::length(q);
+  return length > 0.0 ? q / length : glm::dquat(1.0, 0.0, 0.0, 0.0);
+}
+
+Mat4 parent_from_node(const Json& node, const std::string& place) {
+  if (const auto matrix = real_numbers(node, "matrix", 16, place)) return glm::make_mat4(matrix->data());
+  const auto t = real_numbers(node, "translation", 3, place).value_or(std::vector<double>{0, 0, 0});
+  const auto r = real_numbers(node, "rotation", 4, place).value_or(std::vector<double>{0, 0, 0, 1});
+  const auto s = real_numbers(node, "scale", 3, place).value_or(std::vector<double>{1, 1, 1});
+  return placed({t[0], t[1], t[2]}, unit_quaternion(r[0], r[1], r[2], r[3]), {s[0], s[1], s[2]});
+}
+
+std::vector<std::uint64_t> index_list(const Json& json, const char* key, const std::string& place) {
+  const Json* list = member(json, key);
+  if (list == nullptr) return {};
+  std::vector<std::uint64_t> indices;
+  for (const Json& value : *list) {
+    if (!value.is_number_unsigned()) throw Failure(ErrorWord::kFileBroken, place + "." + key + " holds something else than indices");
+    indices.push_back(value.get<std::uint64_t>());
+  }
+  return indices;
+}
+
+class GltfReader {
+ public:
+  GltfReader(Import& import, std::span<const std::uint8_t> bytes)
+      : import_(import), scene_(import.scene), file_(bytes, import.folder), materials_(file_, import.scene) {}
+
+  void read() {
+    check_extensions();
+    check_uris("buffers");
+    check_uris("images");
+    note_what_is_not_read();
+    walk();
+  }
+
+ private:
+  struct PartRange {
+    std::uint32_t first = 0;
+    std::uint32_t count = 0;
+  };
+
+  void check_extensions() const {
+    const Json* required = member(file_.json(), "extensionsRequired");
+    if (required == nullptr) return;
+    for (const Json& name : *required) {
+      if (name.is_string() && kExtensionsRead.contains(name.get<std::string>())) continue;
+      throw Failure(ErrorWord::kExtensionUnknown, "the scene requires the glTF extension " + name.dump() + ", which is not read");
+    }
+  }
+
+  // Forbidden references are refused even where nothing uses them.
+  void check_uris(const char* array) const {
+    for (std::size_t i = 0; i < file_.count(array); ++i) {
+      const std::string uri = text(file_.item(array, i, array), "uri");
+      if (!uri.empty() && !is_data_uri(uri)) (void)file_.folder().resolve_uri(uri);
+    }
+  }
+
+  void note_what_is_not_read() {
+    add_note(scene_, Kind::kWarning, "skins", file_.count("skins"), "drawn in the pose of the file's vertices");
+    add_note(scene_, Kind::kWarning, "animations", file_.count("animations"), "not played");
+  }
+
+  [[nodiscard]] std::vector<std::uint64_t> roots() const {
+    const std::uint64_t scene = whole_number(file_.json(), "scene", "the file").value_or(0);
+    if (file_.count("scenes") > 0) return index_list(file_.item("scenes", scene, "the file"), "nodes", "scenes");
+    std::vector<bool> is_child(file_.count("nodes"), false);
+    for (std::size_t i = 0; i < is_child.size(); ++i) {
+      for (const std::uint64_t child : index_list(file_.item("nodes", i, "nodes"), "children", "nodes")) {
+        if (child < is_child.size()) is_child[static_cast<std::size_t>(child)] = true;
+      }
+    }
+    std::vector<std::uint64_t> result;
+    for (std::size_t i = 0; i < is_child.size(); ++i) {
+      if (!is_child[i]) result.push_back(i);
+    }
+    return result;
+  }
+
+  // Depth first, parents before children. A node has one place in the tree: a second visit would be a cycle or a copy.
+  void walk() {
+    std::vector<bool> seen(file_.count("nodes"), false);
+    std::vector<std::pair<std::uint64_t, Mat4>> stack;
+    const auto push = [&](const std::vector<std::uint64_t>& nodes, const Mat4& file_from_parent) {
+      for (auto node = nodes.rbegin(); node != nodes.rend(); ++node) stack.emplace_back(*node, file_from_parent);
+    };
+    push(roots(), Mat4(1.0));
+    while (!stack.empty()) {
+      const auto [index, file_from_parent] = stack.back();
+      stack.pop_back();
+      const std::string place = "nodes[" + std::to_string(index) + "]";
+      const Json& node = file_.item("nodes", index, "the node tree");
+      if (seen[static_cast<std::size_t>(index)]) throw Failure(ErrorWord::kFileBroken, place + " occurs twice in the node tree");
+      seen[static_cast<std::size_t>(index)] = true;
+      const Mat4 file_from_node = file_from_parent * parent_from_node(node, place);
+      if (const auto mesh = whole_number(node, "mesh", place)) add_objects(node, index, *mesh, file_from_node);
+      push(index_list(node, "children", place), file_from_node);
+    }
+  }
+
+  void add_objects(const Json& node, std::uint64_t index, std::uint64_t mesh, const Mat4& file_from_node) {
+    const std::string place = "nodes[" + std::to_string(index) + "]";
+    const PartRange range = parts_of(mesh);
+    if (range.count == 0) return;
+    const std::string name = text(node, "name", text(file_.item("meshes", mesh, place), "name", "node_" + std::to_string(index)));
+    const Json* instancing = extension(node, "EXT_mesh_gpu_instancing");
+    if (instancing == nullptr) {
+      add_object(name, text(node, "name"), range, file_from_node);
+      return;
+    }
+    const std::vector<Mat4> instances = node_from_instances(*instancing, place);
+    for (std::size_t i = 0; i < instances.size(); ++i) {
+      add_object(name + "[" + std::to_string(i) + "]", text(node, "name"), range, file_from_node * instances[i]);
+    }
+  }
+
+  void add_object(const std::string& name, const std::string& node, const PartRange& range, const Mat4& file_from_object) {
+    Object object;
+    object.name = name;
+    object.gltf_node = node;
+    object.world_from_object = file_from_object;
+    object.first_part = range.first;
+    object.part_count = range.count;
+    scene_.objects.push_back(std::move(object));
+  }
+
+  std::vector<Mat4> node_from_instances(const Json& instancing, const std::string& place) {
+    const Json* attributes = member(instancing, "attributes");
+    if (attributes == nullptr) throw Failure(ErrorWord::kFileBroken, place + " has instances without attributes");
+    const auto values = [&](const char* name, std::size_t components) {
+      const auto accessor = whole_number(*attributes, name, place);
+      return accessor ? file_.floats(*accessor, components) : std::vector<float>();
+    };
+    const std::vector<float> t = values("TRANSLATION", 3);
+    const std::vector<float> r = values("ROTATION", 4);
+    const std::vector<float> s = values("SCALE", 3);
+    const std::size_t count = std::max({t.size() / 3, r.size() / 4, s.size() / 3});
+    const auto complete = [&](const std::vector<float>& list, std::size_t components) {
+      return list.empty() || list.size() == count * components;
+    };
+    if (!complete(t, 3) || !complete(r, 4) || !complete(s, 3)) {
+      throw Failure(ErrorWord::kFileBroken, place + " has instance attributes of different lengths");
+    }
+    std::vector<Mat4> result;
+    for (std::size_t i = 0; i < count; ++i) {
+      const Vec3 translation = t.empty() ? Vec3(0.0) : Vec3(t[3 * i], t[3 * i + 1], t[3 * i + 2]);
+      const glm::dquat rotation =
+          r.empty() ? unit_quaternion(0, 0, 0, 1) : unit_quaternion(r[4 * i], r[4 * i + 1], r[4 * i + 2], r[4 * i + 3]);
+      const Vec3 scale = s.empty() ? Vec3(1.0) : Vec3(s[3 * i], s[3 * i + 1], s[3 * i + 2]);
+      result.push_back(placed(translation, rotation, scale));
+    }
+    return result;
+  }
+
+  // A glTF mesh's primitives as one range of parts, read once.
+  PartRange parts_of(std::uint64_t mesh) {
+    const auto known = part_ranges_.find(mesh);
+    if (known != part_ranges_.end()) return known->second;
+    const std::string place = "meshes[" + std::to_string(mesh) + "]";
+    const Json& json = file_.item("meshes", mesh, place);
+    const Json* primitives = member(json, "primitives");
+    const std::size_t count = primitives != nullptr && primitives->is_array() ? primitives->size() : 0;
+    PartRange range{static_cast<std::uint32_t>(scene_.parts.size()), 0};
+    for (std::size_t p = 0; p < count; ++p) {
+      const std::string name = text(json, "name", "mesh_" + std::to_string(mesh)) + (count > 1 ? "_" + std::to_string(p) : "");
+      add_part((*primitives)[p], name, place + ".primitives[" + std::to_string(p) + "]");
+    }
+    range.count = static_cast<std::uint32_t>(scene_.parts.size()) - range.first;
+    part_ranges_.emplace(mesh, range);
+    return range;
+  }
+
+  void add_part(const Json& primitive, const std::string& name, const std::string& place) {
+    const auto mode = static_cast<Mode>(whole_number(primitive, "mode", place).value_or(4));
+    if (mode != Mode::kTriangles && mode != Mode::kStrip && mode != Mode::kFan) {
+      add_note(scene_, Kind::kDropped, "primitives", 1, "points and lines are not drawn");
+      return;
+    }
+    const Json* attributes = member(primitive, "attributes");
+    const auto positions = attributes == nullptr ? std::nullopt : whole_number(*attributes, "POSITION", place);
+    if (!positions) {
+      add_note(scene_, Kind::kDropped, "primitives", 1, "no positions");
+      return;
+    }
+    add_note(scene_, Kind::kWarning, "primitives", member(primitive, "targets") != nullptr ? 1 : 0, "morph targets are not applied");
+    const GltfMaterial& material = materials_.material(whole_number(primitive, "material", place));
+    if (const auto mesh = mesh_of(primitive, *attributes, mode, material, name, place)) scene_.parts.push_back({*mesh, material.index});
+  }
+
+  // Primitives that differ in their material only share a mesh.
+  std::optional<std::uint32_t> mesh_of(const Json& primitive, const Json& attributes, Mode mode, const GltfMaterial& material,
+                                       const std::string& name, const std::string& place) {
+    const std::string uv_name = "TEXCOORD_" + std::to_string(material.uv_set);
+    const Json* indices = member(primitive, "indices");
+    const bool transformed = material.textured && !material.uv_transform.identity();
+    std::string key = attributes.dump() + uv_name + (indices == nullptr ? "-" : indices->dump()) + std::to_string(static_cast<int>(mode));
+    if (transformed) key += "/" + std::to_string(material.index);
+    const auto [found, fresh] = meshes_.try_emplace(key, std::nullopt);
+    if (!fresh) return found->second;
+    Mesh mesh = read_mesh(primitive, attributes, mode, uv_name, place);
+    mesh.name = name;
+    if (transformed) {
+      for (glm::vec2& uv : mesh.uvs) uv = material.uv_transform.apply(uv);
+    }
+    if (!clean(mesh, scene_)) return std::nullopt;
+    found->second = static_cast<std::uint32_t>(scene_.meshes.size());
+    scene_.meshes.push_back(std::move(mesh));
+    return found->second;
+  }
+
+  Mesh read_mesh(const Json& primitive, const Json& attributes, Mode mode, const std::string& uv_name, const std::string& place) {
+    Mesh mesh;
+    const auto read_into = [&](auto& target, const std::string& attribute, std::size_t components) {
+      const auto accessor = whole_number(attributes, attribute.c_str(), place);
+      if (!accessor) return;
+      const std::vector<float> values = file_.floats(*accessor, components);
+      target.resize(values.size() / components);
+      if (!values.empty()) std::memcpy(target.data(), values.data(), values.size() * sizeof(float));
+    };
+    read_into(mesh.positions, "POSITION", 3);
+    read_into(mesh.normals, "NORMAL", 3);
+    read_into(mesh.uvs, uv_name, 2);
+    if (const auto indices = whole_number(primitive, "indices", place)) {
+      mesh.indices = file_.indices(*indices);
+    } else {
+      mesh.indices.resize(mesh.positions.size());
+      for (std::uint32_t i = 0; i < mesh.indices.size(); ++i) mesh.indices[i] = i;
+    }
+    if (mode != Mode::kTriangles) mesh.indices = separate(mesh.indices, mode);
+    read_triangles_ += mesh.triangle_count();
+    if (read_triangles_ > import_.options.max_triangles) {
+      throw Failure(ErrorWord::kFileBroken, place + " brings the scene to " + std::to_string(read_triangles_) +
+                                                " triangles, more than the " + std::to_string(import_.options.max_triangles) + " allowed");
+    }
+    return mesh;
+  }
+
+  Import& import_;
+  Scene& scene_;
+  GltfFile file_;
+  GltfMaterials materials_;
+  std::map<std::uint64_t, PartRange> part_ranges_;              // by glTF mesh
+  std::map<std::string, std::optional<std::uint32_t>> meshes_;  // by accessors; nothing where no triangle is left
+  std::uint64_t read_triangles_ = 0;
+};
+
+}  // namespace
+
+void read_gltf(Import& import, std::span<const std::uint8_t> bytes) {
+  import.statement = {UpAxis::kY, 1.0, "glTF 2.0"};
+  GltfReader(import, bytes).read();
+}
+
+}  // namespace standin

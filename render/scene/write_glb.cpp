@@ -1,0 +1,166 @@
+// A Scene as one binary glTF 2.0 file. Objects that show the same parts become nodes of one glTF mesh; meshes are stored once however many
+// materials they wear.
+
+#include <cstring>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "render/base/error.h"
+#include "render/image/image_io.h"
+#include "render/scene/file_access.h"
+#include "render/scene/gltf_materials.h"
+#include "render/scene/load.h"
+
+namespace standin {
+namespace {
+
+using OrderedJson = nlohmann::ordered_json;
+
+constexpr int kUnsignedShort = 5123;
+constexpr int kUnsignedInt = 5125;
+constexpr int kFloat = 5126;
+constexpr int kArrayBuffer = 34962;
+constexpr int kElementArrayBuffer = 34963;
+
+class GlbWriter {
+ public:
+  explicit GlbWriter(const Scene& scene) : scene_(scene) {}
+
+  void write(const std::filesystem::path& file) {
+    json_["asset"] = {{"version", "2.0"}, {"generator", "standin"}};
+    for (const Texture& texture : scene_.textures) add_texture(texture);
+    for (const Material& material : scene_.materials) add_material(material);
+    for (const Mesh& mesh : scene_.meshes) add_accessors(mesh);
+    OrderedJson roots = OrderedJson::array();
+    for (const Object& object : scene_.objects) {
+      roots.push_back(json_["nodes"].size());
+      add_node(object);
+    }
+    json_["scene"] = 0;
+    json_["scenes"] = OrderedJson::array({{{"nodes", roots}}});
+    json_["buffers"] = OrderedJson::array({{{"byteLength", binary_.size()}}});
+    write_chunks(file);
+  }
+
+ private:
+  // Views start at multiples of 4, as accessors need.
+  std::size_t add_view(const void* data, std::size_t size, int target) {
+    binary_.resize((binary_.size() + 3) / 4 * 4, 0);
+    OrderedJson view{{"buffer", 0}, {"byteOffset", binary_.size()}, {"byteLength", size}};
+    if (target != 0) view["target"] = target;
+    const auto* first = static_cast<const std::uint8_t*>(data);
+    binary_.insert(binary_.end(), first, first + size);
+    json_["bufferViews"].push_back(std::move(view));
+    return json_["bufferViews"].size() - 1;
+  }
+
+  template <typename T>
+  std::size_t add_accessor(const std::vector<T>& values, int component_type, const char* type, int target) {
+    const std::size_t view = add_view(values.data(), values.size() * sizeof(T), target);
+    json_["accessors"].push_back({{"bufferView", view}, {"componentType", component_type}, {"count", values.size()}, {"type", type}});
+    return json_["accessors"].size() - 1;
+  }
+
+  void add_texture(const Texture& texture) {
+    const std::string png = encode_png(texture);
+    const std::size_t view = add_view(png.data(), png.size(), 0);
+    const std::size_t index = json_["images"].size();
+    json_["images"].push_back({{"name", texture.name}, {"mimeType", "image/png"}, {"bufferView", view}});
+    json_["textures"].push_back({{"source", index}});
+  }
+
+  void add_material(const Material& material) {
+    const auto linear = [&](int channel) { return srgb_decoded(static_cast<double>(material.base_colour[channel])); };
+    OrderedJson surface{{"baseColorFactor", {linear(0), linear(1), linear(2), static_cast<double>(material.base_colour.a)}},
+                        {"metallicFactor", 0.0},
+                        {"roughnessFactor", 1.0}};
+    if (material.texture >= 0) surface["baseColorTexture"] = {{"index", material.texture}};
+    OrderedJson json{{"name", material.name}, {"pbrMetallicRoughness", std::move(surface)}, {"doubleSided", material.double_sided}};
+    if (material.alpha_mode == AlphaMode::kMask) {
+      json["alphaMode"] = "MASK";
+      json["alphaCutoff"] = static_cast<double>(material.alpha_cutoff);
+    }
+    if (material.unlit) {
+      json["extensions"] = {{"KHR_materials_unlit", OrderedJson::object()}};
+      json_["extensionsUsed"] = {"KHR_materials_unlit"};
+    }
+    json_["materials"].push_back(std::move(json));
+  }
+
+  // The primitive of each mesh, but for its material.
+  void add_accessors(const Mesh& mesh) {
+    OrderedJson attributes{{"POSITION", add_accessor(mesh.positions, kFloat, "VEC3", kArrayBuffer)}};
+    OrderedJson& accessor = json_["accessors"].back();
+    const auto corner = [](const Vec3& v) { return OrderedJson{v.x, v.y, v.z}; };
+    Box bounds;
+    for (const glm::vec3& position : mesh.positions) bounds.extend(Vec3(position));
+    accessor["min"] = corner(bounds.min);
+    accessor["max"] = corner(bounds.max);
+    attributes["NORMAL"] = add_accessor(mesh.normals, kFloat, "VEC3", kArrayBuffer);
+    if (!mesh.uvs.empty()) attributes["TEXCOORD_0"] = add_accessor(mesh.uvs, kFloat, "VEC2", kArrayBuffer);
+    primitives_.push_back({{"attributes", std::move(attributes)}, {"indices", add_indices(mesh)}});
+  }
+
+  std::size_t add_indices(const Mesh& mesh) {
+    if (mesh.positions.size() > 65535) return add_accessor(mesh.indices, kUnsignedInt, "SCALAR", kElementArrayBuffer);
+    const std::vector<std::uint16_t> narrow(mesh.indices.begin(), mesh.indices.end());
+    return add_accessor(narrow, kUnsignedShort, "SCALAR", kElementArrayBuffer);
+  }
+
+  std::size_t mesh_of(const Object& object) {
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> key;
+    for (std::uint32_t p = 0; p < object.part_count; ++p) {
+      const Part& part = scene_.parts[object.first_part + p];
+      key.emplace_back(part.mesh, part.material);
+    }
+    const auto [place, fresh] = meshes_.try_emplace(key, json_["meshes"].size());
+    if (!fresh) return place->second;
+    OrderedJson primitives = OrderedJson::array();
+    for (const auto& [mesh, material] : key) {
+      primitives.push_back(primitives_[mesh]);
+      primitives.back()["material"] = material;
+    }
+    const std::string name = key.empty() ? "" : scene_.meshes[key.front().first].name;
+    json_["meshes"].push_back({{"name", name}, {"primitives", std::move(primitives)}});
+    return place->second;
+  }
+
+  void add_node(const Object& object) {
+    OrderedJson matrix = OrderedJson::array();
+    for (int column = 0; column < 4; ++column) {
+      for (int row = 0; row < 4; ++row) matrix.push_back(object.world_from_object[column][row]);
+    }
+    json_["nodes"].push_back({{"name", object.name}, {"mesh", mesh_of(object)}, {"matrix", std::move(matrix)}});
+  }
+
+  void write_chunks(const std::filesystem::path& file) {
+    std::string text = json_.dump(-1, ' ', false, OrderedJson::error_handler_t::replace);
+    text.resize((text.size() + 3) / 4 * 4, ' ');
+    binary_.resize((binary_.size() + 3) / 4 * 4, 0);
+    const std::size_t length = 12 + 8 + text.size() + 8 + binary_.size();
+    if (length > 0xFFFFFFFFU)
+      throw Failure(ErrorWord::kBadUsage, "the scene takes " + std::to_string(length) + " bytes; a GLB holds 4 GiB");
+    const auto word = [](std::size_t value) { return static_cast<std::uint32_t>(value); };
+    const std::array<std::uint32_t, 5> head{0x46546C67U, 2, word(length), word(text.size()), 0x4E4F534AU};
+    const std::array<std::uint32_t, 2> binary_head{word(binary_.size()), 0x004E4942U};
+    const auto bytes = [](const auto& list) {
+      return std::span(reinterpret_cast<const std::uint8_t*>(list.data()), list.size() * sizeof(list[0]));
+    };
+    const std::array<std::span<const std::uint8_t>, 4> pieces{bytes(head), bytes(text), bytes(binary_head), bytes(binary_)};
+    write_whole(file, pieces);
+  }
+
+  const Scene& scene_;
+  OrderedJson json_;
+  std::vector<std::uint8_t> binary_;
+  std::vector<OrderedJson> primitives_;
+  std::map<std::vector<std::pair<std::uint32_t, std::uint32_t>>, std::size_t> meshes_;
+};
+
+}  // namespace
+
+void write_scene_glb(const Scene& scene, const std::filesystem::path& file) {
+  GlbWriter(scene).write(file);
+}
+
+}  // namespace standin
