@@ -30,6 +30,14 @@ std::optional<ViewCell> view_cell_around(const DraftContext& context, const Box&
   return tight_shaft(object_bounds.centre(), boxes);
 }
 
+// The sketch's number of layers may be off by a few: near the limit only the full plan knows, and what is selected must be bakeable.
+bool can_be_baked(const DraftContext& context, const Box& object_bounds, const ViewCell& view_cell, const ImpostorSketch& sketch) {
+  constexpr double kSure = 0.9;
+  if (!std::isfinite(sketch.layers)) return false;
+  return sketch.layers <= kSure * context.quality.max_layers ||
+         plan_impostor(object_bounds, view_cell, context.camera, context.quality).possible;
+}
+
 }  // namespace
 
 std::optional<Draft> draft_candidate(const DraftContext& context, std::uint32_t node, const CellSet& cells) {
@@ -39,7 +47,7 @@ std::optional<Draft> draft_candidate(const DraftContext& context, std::uint32_t 
   const auto view_cell = view_cell_around(context, bounds, cells);
   if (!view_cell) return std::nullopt;
   const ImpostorSketch sketch = sketch_impostor(bounds, *view_cell, context.camera, context.quality);
-  if (!std::isfinite(sketch.layers)) return std::nullopt;
+  if (!can_be_baked(context, bounds, *view_cell, sketch)) return std::nullopt;
 
   const SizeEstimate size = estimate_size(context.sizes, size_input(context.scene, objects, bounds, *view_cell, sketch));
   Draft draft;

@@ -7,7 +7,7 @@ namespace standin {
 namespace {
 
 constexpr double kSpare = 1e-9;
-constexpr int kAimingRounds = 3;  // the middle moves when the frame turns; it settles at once for small apertures
+constexpr int kAimingRounds = 3;  // turning the frame about one axis moves slopes along the other a little
 
 /// Slopes and distances of all corners in a shaft's frame.
 struct Span {
@@ -53,7 +53,7 @@ std::optional<Shaft> tight_shaft(const Vec3& apex, std::span<const Box> cells) {
   Shaft shaft = shaft_frame(apex, *direction);
   Span span = span_of(shaft, cells);
   for (int round = 0; round < kAimingRounds && span.near_m > 0.0; ++round) {
-    const Vec2 middle = 0.5 * (span.slope_min + span.slope_max);
+    const Vec2 middle = glm::tan(0.5 * (glm::atan(span.slope_min) + glm::atan(span.slope_max)));
     const Shaft aimed = shaft_frame(apex, glm::normalize(shaft.axis + middle.x * shaft.right + middle.y * shaft.up));
     const Span aimed_span = span_of(aimed, cells);
     if (aimed_span.near_m <= 0.0) break;  // a corner fell behind: the present aim is the better one
