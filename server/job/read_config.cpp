@@ -1,7 +1,6 @@
 // TOML configuration files, through toml++ (the only file that includes it).
 #include <fstream>
 #include <sstream>
-#define TOML_HEADER_ONLY 1
 #include <toml++/toml.h>
 
 #include "render/base/error.h"

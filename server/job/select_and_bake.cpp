@@ -27,9 +27,9 @@ std::uint32_t pages_for(double bytes) {
 // Keeps what was baked across rounds; candidate ids stay the same throughout.
 class Baker {
  public:
-  Baker(const World& world, std::vector<Candidate>& candidates) : world_(world), candidates_(candidates) {}
+  Baker(const World& world, const std::vector<Candidate>& candidates) : world_(world), candidates_(candidates), sizes_(candidates.size()) {}
 
-  // Bakes those of `chosen` that are not baked yet and puts their real bytes and costs into the candidates. Returns how many.
+  // Bakes those of `chosen` that are not baked yet. Returns how many.
   std::uint32_t bake(const std::vector<std::uint32_t>& chosen, const WorkBudget& budget) {
     std::vector<std::uint32_t> missing;
     for (const auto id : chosen)
@@ -50,25 +50,27 @@ class Baker {
 
   [[nodiscard]] double bytes(const std::vector<std::uint32_t>& chosen) const {
     double sum = 0.0;
-    for (const auto id : chosen) sum += candidates_[id].bytes;
+    for (const auto id : chosen) sum += sizes_[id] ? sizes_[id]->bytes : candidates_[id].bytes;
     return sum;
   }
+  /// Real bytes and costs, per candidate.
+  [[nodiscard]] const std::vector<std::optional<BakedSize>>& sizes() const { return sizes_; }
 
  private:
   void keep(std::uint32_t id, Impostor impostor) {
-    candidates_[id].bytes = std::max(1.0, static_cast<double>(texture_bytes(impostor)));
-    candidates_[id].cost = impostor_cost(impostor);
+    sizes_[id] = BakedSize{std::max(1.0, static_cast<double>(texture_bytes(impostor))), impostor_cost(impostor)};
     baked_.emplace(id, std::move(impostor));
   }
 
   const World& world_;
-  std::vector<Candidate>& candidates_;
+  const std::vector<Candidate>& candidates_;
+  std::vector<std::optional<BakedSize>> sizes_;
   std::map<std::uint32_t, Impostor> baked_;
 };
 
 // CPVs whose real bound misses the budget although the selection called them met.
-std::uint32_t count_short(const Subdivision& subdivision, const Selection& selection, const std::vector<Candidate>& candidates,
-                          const Baker& baker, const World& world, const TimeModel& model, double budget_ms, double page_switch_ms) {
+std::uint32_t count_short(const Subdivision& subdivision, const Selection& selection, const Baker& baker, const World& world,
+                          const TimeModel& model, double budget_ms, double page_switch_ms) {
   std::vector<bool> unmet(subdivision.cpvs.size(), false);
   for (const auto& shortfall : selection.summary.unmet) unmet[shortfall.cpv] = true;
   std::uint32_t count = 0;
@@ -80,7 +82,7 @@ std::uint32_t count_short(const Subdivision& subdivision, const Selection& selec
     all.clear();
     for (const auto id : selection.assigned[p]) {
       all.push_back(static_cast<std::uint32_t>(drawn.size()));
-      drawn.push_back({&baker.impostor(id), candidates[id].cost});
+      drawn.push_back({&baker.impostor(id), baker.sizes()[id]->cost});
     }
     const double after_ms = predicted_after_ms(subdivision, subdivision.cpvs[p], drawn, all, model, world.camera, page_switch_ms);
     count += model.bound_ms(after_ms) > budget_ms ? 1 : 0;
@@ -88,14 +90,14 @@ std::uint32_t count_short(const Subdivision& subdivision, const Selection& selec
   return count;
 }
 
-void collect(SelectedImpostors& result, Baker& baker, const std::vector<Candidate>& candidates) {
+void collect(SelectedImpostors& result, Baker& baker) {
   std::map<std::uint32_t, std::uint32_t> position;
   for (const auto id : result.selection.chosen) {
     position[id] = static_cast<std::uint32_t>(result.impostors.size());
     result.impostors.push_back(baker.take(id));
   }
   for (std::size_t i = 0; i < result.impostors.size(); ++i)
-    result.baked.push_back({&result.impostors[i], candidates[result.selection.chosen[i]].cost});
+    result.baked.push_back({&result.impostors[i], baker.sizes()[result.selection.chosen[i]]->cost});
   for (const auto& antichain : result.selection.assigned) {
     std::vector<std::uint32_t> drawn;
     for (const auto id : antichain) drawn.push_back(position.at(id));
@@ -106,18 +108,19 @@ void collect(SelectedImpostors& result, Baker& baker, const std::vector<Candidat
 
 }  // namespace
 
-SelectedImpostors select_and_bake(const World& world, const Subdivision& subdivision, const CandidateSet& generated, const TimeModel& model,
-                                  double budget_ms, const JobSpec& spec, StageClock& clock, const WorkBudget& budget) {
-  std::vector<Candidate> candidates = generated.candidates;
-  Baker baker(world, candidates);
+SelectedImpostors select_and_bake(const World& world, const Subdivision& subdivision, const CandidateSet& candidates,
+                                  const TimeModel& model, double budget_ms, const JobSpec& spec, StageClock& clock,
+                                  const WorkBudget& budget) {
+  Baker baker(world, candidates.candidates);
   SelectedImpostors result;
   result.atlas_pages = 1;
   for (int round = 1;; ++round) {
     const bool last = round >= spec.bake_rounds;
     result.page_switch_ms = page_switches_ms(model, result.atlas_pages);
     clock.run("select", [&] {
-      const SelectionProblem problem = make_selection_problem(world.hierarchy, subdivision, candidates, model, world.camera,
-                                                              model.predicted_budget_ms(budget_ms), result.page_switch_ms);
+      const SelectionBudget limits{model.predicted_budget_ms(budget_ms), result.page_switch_ms};
+      const SelectionProblem problem = make_selection_problem(world.hierarchy, subdivision, candidates, baker.sizes(), model, world.camera,
+                                                              limits, world.threads, budget);
       SelectionConfig config;
       config.exchange_rounds = spec.exchange_rounds;
       config.bound_iterations = spec.bound_iterations;
@@ -128,15 +131,14 @@ SelectedImpostors select_and_bake(const World& world, const Subdivision& subdivi
     outcome.baked = clock.run("bake", [&] { return baker.bake(result.selection.chosen, budget); });
     outcome.real_bytes = baker.bytes(result.selection.chosen);
     const std::uint32_t pages = pages_for(outcome.real_bytes);
-    outcome.short_cpvs =
-        count_short(subdivision, result.selection, candidates, baker, world, model, budget_ms, page_switches_ms(model, pages));
+    outcome.short_cpvs = count_short(subdivision, result.selection, baker, world, model, budget_ms, page_switches_ms(model, pages));
     result.rounds.push_back(outcome);
     const bool settled = outcome.baked == 0 && outcome.short_cpvs == 0 && pages <= result.atlas_pages;
     result.atlas_pages = std::max(pages, result.atlas_pages);
     if (last || settled || result.selection.chosen.empty()) break;
   }
   result.page_switch_ms = page_switches_ms(model, result.atlas_pages);
-  collect(result, baker, candidates);
+  collect(result, baker);
   return result;
 }
 
