@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -75,6 +76,17 @@ struct VerifyInput {
   double budget_ms;
   double alpha_rad;
 };
+
+/// Whoever times holds the machine-wide lock for as long; a test's fake timer needs none.
+struct TimingSession {
+  std::unique_ptr<TimingLock> lock;
+  std::unique_ptr<FrameTimer> timer;
+};
+/// Called once, when timing begins; empty: nothing is timed.
+using StartTiming = std::function<TimingSession(Context&)>;
+
+[[nodiscard]] VerifyResult verify_placement(const VerifyInput& input, Context& context, const StartTiming& start_timing,
+                                            const VerifyOptions& options, const WorkBudget& budget);
 
 /// `measure` false: nothing is timed (another machine's target, say); pictures are drawn all the same.
 [[nodiscard]] VerifyResult verify_placement(const VerifyInput& input, DeviceKind device, bool measure, const VerifyOptions& options,

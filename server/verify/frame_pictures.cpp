@@ -1,0 +1,68 @@
+#include "server/verify/frame_pictures.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <numeric>
+
+#include "render/image/image_io.h"
+
+namespace standin {
+namespace {
+
+constexpr int kAmplification = 4;
+
+Texture picture(Renderer& renderer, const View& view, const DrawList& list) {
+  renderer.draw(view, list);
+  return renderer.read_pixels();
+}
+
+/// The renderer's background has alpha 0.
+Texture opaque(Texture image) {
+  for (std::size_t i = 3; i < image.rgba.size(); i += 4) image.rgba[i] = 255;
+  return image;
+}
+
+Texture amplified_difference(const Texture& a, const Texture& b) {
+  Texture difference = a;
+  for (std::size_t i = 0; i < a.rgba.size(); ++i)
+    difference.rgba[i] = i % 4 == 3 ? 255 : static_cast<std::uint8_t>(std::min(255, kAmplification * std::abs(a.rgba[i] - b.rgba[i])));
+  return difference;
+}
+
+double after_ms(const VerifiedView& view) {
+  return view.measured_after_ms.value_or(view.estimated_after_ms);
+}
+
+template <class Key>
+std::vector<std::uint32_t> descending(const std::vector<VerifiedView>& views, const Key& key) {
+  std::vector<std::uint32_t> order(views.size());
+  std::iota(order.begin(), order.end(), 0U);
+  std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return key(views[a]) > key(views[b]); });
+  return order;
+}
+
+}  // namespace
+
+double picture_error(Renderer& renderer, const View& view, const FramePair& frames) {
+  if (frames.after.impostors.empty()) return 0.0;
+  const Texture original = picture(renderer, view, frames.before);
+  return mean_error(original, picture(renderer, view, frames.after));
+}
+
+ViewPictures take_pictures(Renderer& renderer, std::uint32_t index, const View& view, const FramePair& frames) {
+  ViewPictures pictures{index, opaque(picture(renderer, view, frames.before)), opaque(picture(renderer, view, frames.after)), {}};
+  pictures.difference = amplified_difference(pictures.original, pictures.with_impostors);
+  return pictures;
+}
+
+std::vector<std::uint32_t> worst_views(const std::vector<VerifiedView>& views, std::uint32_t count) {
+  const auto by_error = descending(views, [](const VerifiedView& view) { return view.mean_error; });
+  const auto by_time = descending(views, after_ms);
+  std::vector<std::uint32_t> chosen;
+  for (std::size_t rank = 0; rank < views.size(); ++rank)
+    for (const std::uint32_t view : {by_error[rank], by_time[rank]})
+      if (chosen.size() < count && std::find(chosen.begin(), chosen.end(), view) == chosen.end()) chosen.push_back(view);
+  return chosen;
+}
+
+}  // namespace standin

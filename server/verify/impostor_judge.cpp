@@ -1,0 +1,69 @@
+#include "server/verify/impostor_judge.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "server/verify/impostor_rays.h"
+
+namespace standin {
+namespace {
+
+constexpr std::uint32_t kViewsPerImpostor = 4;  // one of each kind that sample_cell_views offers
+
+std::vector<std::uint32_t> by_layer_count(const std::vector<PlacementImpostor>& impostors) {
+  std::vector<std::uint32_t> order(impostors.size());
+  std::iota(order.begin(), order.end(), 0U);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::uint32_t a, std::uint32_t b) { return impostors[a].layers.size() < impostors[b].layers.size(); });
+  return order;
+}
+
+/// `wanted` of the order's entries, evenly spaced, the first and the last one included.
+std::vector<std::uint32_t> evenly_spaced(const std::vector<std::uint32_t>& order, std::size_t wanted) {
+  if (wanted >= order.size()) return order;
+  if (wanted == 1) return {order.back()};
+  std::vector<std::uint32_t> chosen;
+  for (std::size_t i = 0; i < wanted; ++i) chosen.push_back(order[i * (order.size() - 1) / (wanted - 1)]);
+  return chosen;
+}
+
+Box bounds_of(const Scene& scene, const std::vector<std::uint32_t>& objects) {
+  Box bounds;
+  for (const auto object : objects) bounds.extend(scene.objects[object].bounds);
+  return bounds;
+}
+
+JudgedImpostor judged(const PlacementImpostor& placed, std::uint32_t id, double alpha_rad) {
+  return {"imp_" + std::to_string(id), placed.objects,   placed.layers, placed.frame.reference_viewpoint,
+          placed.frame.forward,        placed.view_cell, alpha_rad};
+}
+
+}  // namespace
+
+void judge_impostors(const VerifyInput& input, const GlbQuads& glb, const VerifyOptions& options, const WorkBudget& budget,
+                     VerifyResult& result) {
+  const auto& impostors = input.placement.impostors;
+  if (impostors.empty() || options.judged_views == 0) {
+    result.left_out.emplace_back(impostors.empty() ? "judging by rays: there is no impostor" : "judging by rays: no views were asked for");
+    return;
+  }
+  const std::size_t wanted = std::max(1U, options.judged_views / kViewsPerImpostor);
+  const std::vector<std::uint32_t> chosen = evenly_spaced(by_layer_count(impostors), wanted);
+  const auto views_each = std::max(1U, options.judged_views / static_cast<std::uint32_t>(chosen.size()));
+  for (const std::uint32_t id : chosen) {
+    budget.check();
+    budget.report("verify: rays", static_cast<double>(result.judged_views) / options.judged_views);
+    const auto views =
+        sample_cell_views(impostors[id].view_cell, bounds_of(input.scene, impostors[id].objects), views_each, options.seed + id);
+    const ImpostorJudgement judgement =
+        judge_impostor(input.scene, glb, judged(impostors[id], id, input.alpha_rad), input.camera, views, options.threads, budget);
+    result.judged_views += judgement.views;
+    result.gap_pixels += judgement.gap_pixels;
+    result.max_parallax_ratio = std::max(result.max_parallax_ratio, judgement.max_parallax_ratio);
+  }
+  if (chosen.size() < impostors.size())
+    result.left_out.push_back("judging by rays: a sample of " + std::to_string(chosen.size()) + " of " + std::to_string(impostors.size()) +
+                              " impostors");
+}
+
+}  // namespace standin

@@ -1,0 +1,142 @@
+// Look every view up, estimate it, draw it with and without impostors, time it, and have rays judge the impostors themselves.
+#include "server/verify/verify.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "render/device/renderer.h"
+#include "server/verify/frame_estimate.h"
+#include "server/verify/frame_pictures.h"
+#include "server/verify/impostor_judge.h"
+#include "server/verify/shipped_impostors.h"
+#include "server/verify/view_sampling.h"
+
+namespace standin {
+namespace {
+
+DrawList draw_list(const Placement& placement, const Lookup& lookup, const Scene& scene) {
+  ViewContent content = content_of(placement, lookup, static_cast<std::uint32_t>(scene.objects.size()));
+  return {std::move(content.objects), std::move(content.impostors)};
+}
+
+/// Fills in the views' look-ups and says what each draws.
+std::vector<FramePair> look_up(const VerifyInput& input, std::vector<VerifiedView>& views) {
+  const PlacementIndex index(input.placement);
+  std::vector<FramePair> frames;
+  for (auto& view : views) {
+    const Lookup lookup = index.find(view.view.position, view.view.direction);
+    view.cell = lookup.cell;
+    view.cpv = lookup.cpv;
+    frames.push_back(
+        {draw_list(input.placement, {lookup.cell, std::nullopt}, input.scene), draw_list(input.placement, lookup, input.scene)});
+  }
+  return frames;
+}
+
+void estimate(const VerifyInput& input, const ImpostorSet& shipped, const std::vector<FramePair>& frames,
+              std::vector<VerifiedView>& views) {
+  const FrameEstimator estimator(input.scene, input.camera, input.target.model, shipped);
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    views[i].estimated_before_ms = estimator.predicted_ms(views[i].view, frames[i].before);
+    views[i].estimated_after_ms = estimator.predicted_ms(views[i].view, frames[i].after);
+  }
+}
+
+/// The slow frames to time: `share` of the views, rounded up, highest estimates first.
+std::vector<bool> timed_before(const std::vector<VerifiedView>& views, double share) {
+  std::vector<std::uint32_t> order(views.size());
+  std::iota(order.begin(), order.end(), 0U);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::uint32_t a, std::uint32_t b) { return views[a].estimated_before_ms > views[b].estimated_before_ms; });
+  order.resize(std::min(order.size(), static_cast<std::size_t>(std::ceil(share * static_cast<double>(views.size())))));
+  std::vector<bool> timed(views.size(), false);
+  for (const auto view : order) timed[view] = true;
+  return timed;
+}
+
+void time_frames(Renderer& renderer, FrameTimer& timer, double before_share, const std::vector<FramePair>& frames, const WorkBudget& budget,
+                 std::vector<VerifiedView>& views) {
+  const std::vector<bool> before = timed_before(views, before_share);
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    budget.check();
+    budget.report("verify: timing", static_cast<double>(i) / static_cast<double>(views.size()));
+    views[i].measured_after_ms = timer.time(renderer, views[i].view, frames[i].after).milliseconds;
+    if (before[i]) views[i].measured_before_ms = timer.time(renderer, views[i].view, frames[i].before).milliseconds;
+  }
+}
+
+void compare_pictures(Renderer& renderer, const std::vector<FramePair>& frames, const WorkBudget& budget, VerifyResult& result) {
+  std::uint32_t compared = 0;
+  double sum = 0.0;
+  for (std::size_t i = 0; i < result.views.size(); ++i) {
+    budget.check();
+    budget.report("verify: pictures", static_cast<double>(i) / static_cast<double>(result.views.size()));
+    if (frames[i].after.impostors.empty()) continue;
+    result.views[i].mean_error = picture_error(renderer, result.views[i].view, frames[i]);
+    sum += result.views[i].mean_error;
+    ++compared;
+  }
+  result.mean_error = compared > 0 ? sum / compared : 0.0;
+  if (compared == 0) result.left_out.emplace_back("image comparison: no sampled view draws an impostor");
+}
+
+void count_over_budget(double budget_ms, VerifyResult& result) {
+  for (const auto& view : result.views) {
+    if (view.estimated_after_ms > budget_ms) ++result.over_budget_estimated;
+    if (!view.measured_after_ms) continue;
+    if (*view.measured_after_ms > budget_ms) ++result.over_budget_measured;
+    result.worst_over_budget = std::max(result.worst_over_budget, *view.measured_after_ms / budget_ms);
+  }
+}
+
+void note_untimed(bool timed, const VerifyOptions& options, VerifyResult& result) {
+  if (!timed)
+    result.left_out.emplace_back(
+        "frame times: not measured, since the target file belongs to another device or renderer than this machine's");
+  else if (options.measured_before_share < 1.0)
+    result.left_out.push_back("frame times before: measured for " + std::to_string(options.measured_before_share) +
+                              " of the views, those with the highest estimates, to save time");
+}
+
+}  // namespace
+
+VerifyResult verify_placement(const VerifyInput& input, Context& context, const StartTiming& start_timing, const VerifyOptions& options,
+                              const WorkBudget& budget) {
+  const GlbQuads glb = read_glb_quads(input.impostor_glb);
+  const ImpostorSet shipped = shipped_impostors(glb, input.placement);
+  VerifyResult result;
+  result.views = sample_views(input.placement, input.view_space, options.views, options.seed);
+  const std::vector<FramePair> frames = look_up(input, result.views);
+  estimate(input, shipped, frames, result.views);
+
+  Renderer renderer(context, input.scene, input.camera);
+  renderer.upload(shipped);
+  compare_pictures(renderer, frames, budget, result);
+  if (start_timing) {
+    const TimingSession session = start_timing(context);
+    time_frames(renderer, *session.timer, options.measured_before_share, frames, budget, result.views);
+  }
+  note_untimed(static_cast<bool>(start_timing), options, result);
+  count_over_budget(input.budget_ms, result);
+  for (const auto view : worst_views(result.views, options.pictures))
+    result.pictures.push_back(take_pictures(renderer, view, result.views[view].view, frames[view]));
+  judge_impostors(input, glb, options, budget, result);
+  return result;
+}
+
+VerifyResult verify_placement(const VerifyInput& input, DeviceKind device, bool measure, const VerifyOptions& options,
+                              const WorkBudget& budget) {
+  const auto context = make_context(device, input.camera.width, input.camera.height);
+  StartTiming start_timing;
+  if (measure)
+    start_timing = [&](Context& timed) {
+      TimingProtocol protocol;
+      protocol.reference_ms = input.target.reference_ms;
+      auto lock = std::make_unique<TimingLock>(budget);
+      return TimingSession{std::move(lock), make_cpu_frame_timer(timed, protocol)};
+    };
+  return verify_placement(input, *context, start_timing, options, budget);
+}
+
+}  // namespace standin
