@@ -47,7 +47,7 @@ BitImage opaque_texels(const LayerImage& image) {
 void append_block(const LayerImage& image, const Quad& quad, BitImage& left, std::vector<std::uint8_t>& texels) {
   for (std::uint32_t y = quad.y; y < quad.y + quad.height; ++y)
     for (std::uint32_t x = quad.x; x < quad.x + quad.width; ++x) {
-      const auto rgba = left.test(x, y) ? image.rgba(x, y) : std::array<std::uint8_t, 4>{0, 0, 0, 0};
+      const auto rgba = left.test(x, y) ? image.get(x, y).rgba : std::array<std::uint8_t, 4>{0, 0, 0, 0};
       texels.insert(texels.end(), rgba.begin(), rgba.end());
       left.clear(x, y);
     }

@@ -30,8 +30,12 @@ class ClosedCoverage {
     const Range rows = touched(top, bottom, height_);
     if (rows.first > rows.last) return;
     spans_.assign(static_cast<std::size_t>(rows.last - rows.first + 1), Span{});
-    for (std::size_t i = 0; i < piece.count; ++i)
-      add_edge(piece.vertices[i].position, piece.vertices[(i + 1) % piece.count].position, rows.first, rows.last);
+    if (rows.first == rows.last && top >= rows.first && bottom <= rows.first + 1.0) {
+      for (std::size_t i = 0; i < piece.count; ++i) spans_[0].extend(piece.vertices[i].position.x);
+    } else {
+      for (std::size_t i = 0; i < piece.count; ++i)
+        add_edge(piece.vertices[i].position, piece.vertices[(i + 1) % piece.count].position, rows);
+    }
     for (int row = rows.first; row <= rows.last; ++row) {
       const Span& span = spans_[static_cast<std::size_t>(row - rows.first)];
       const Range columns = touched(span.low, span.high, width_);
@@ -45,6 +49,10 @@ class ClosedCoverage {
   struct Span {
     double low = std::numeric_limits<double>::infinity();
     double high = -std::numeric_limits<double>::infinity();
+    void extend(double x) {
+      low = std::min(low, x);
+      high = std::max(high, x);
+    }
   };
   struct Range {
     int first = 0;
@@ -59,18 +67,15 @@ class ClosedCoverage {
     return {static_cast<int>(std::max(first, 0.0)), static_cast<int>(std::min(last, size - 1.0))};
   }
 
-  void add_edge(Vec2 a, Vec2 b, int first_row, int last_row) {
+  void add_edge(Vec2 a, Vec2 b, const Range& rows) {
     if (b.y < a.y || (b.y == a.y && b.x < a.x)) std::swap(a, b);  // the same order for both neighbours of an edge
-    const int first = std::max(first_row, static_cast<int>(std::max(std::ceil(a.y - kSlack) - 1.0, -1.0)));
-    const int last = static_cast<int>(std::min(std::floor(b.y + kSlack), static_cast<double>(last_row)));
-    const double height = b.y - a.y;
+    const int first = static_cast<int>(std::max(std::ceil(a.y - kSlack) - 1.0, static_cast<double>(rows.first)));
+    const int last = static_cast<int>(std::min(std::floor(b.y + kSlack), static_cast<double>(rows.last)));
+    const double x_per_y = b.y > a.y ? (b.x - a.x) / (b.y - a.y) : 0.0;
     for (int row = first; row <= last; ++row) {
-      const double y0 = std::clamp(static_cast<double>(row), a.y, b.y), y1 = std::clamp(row + 1.0, a.y, b.y);
-      const double x0 = height > 0.0 ? a.x + (y0 - a.y) / height * (b.x - a.x) : a.x;
-      const double x1 = height > 0.0 ? a.x + (y1 - a.y) / height * (b.x - a.x) : b.x;
-      Span& span = spans_[static_cast<std::size_t>(row - first_row)];
-      span.low = std::min(span.low, std::min(x0, x1));
-      span.high = std::max(span.high, std::max(x0, x1));
+      Span& span = spans_[static_cast<std::size_t>(row - rows.first)];
+      span.extend(row <= a.y ? a.x : a.x + (std::min<double>(row, b.y) - a.y) * x_per_y);
+      span.extend(row + 1.0 >= b.y ? b.x : a.x + (std::max(row + 1.0, a.y) - a.y) * x_per_y);
     }
   }
 

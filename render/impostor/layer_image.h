@@ -13,6 +13,8 @@ namespace standin {
 struct RecordedTexel {
   std::array<std::uint8_t, 4> rgba{0, 0, 0, 0};  // alpha 255: opaque, 0: nothing drawn yet
   float order = 0.0F;                            // of two surfaces in one texel the one of lower order wins
+
+  [[nodiscard]] bool opaque() const { return rgba[3] != 0; }
 };
 
 class LayerImage {
@@ -31,10 +33,11 @@ class LayerImage {
     return tiles_[tile][texel_index(x, y)];
   }
 
-  /// Colour and alpha; all zero where nothing was drawn.
-  [[nodiscard]] std::array<std::uint8_t, 4> rgba(std::uint32_t x, std::uint32_t y) const {
+  /// The texel as it is, undrawn where nothing was drawn.
+  [[nodiscard]] const RecordedTexel& get(std::uint32_t x, std::uint32_t y) const {
+    static constexpr RecordedTexel kUndrawn;
     const std::uint32_t tile = tile_of_.empty() ? kNoTile : tile_of_[tile_index(x, y)];
-    return tile == kNoTile ? std::array<std::uint8_t, 4>{0, 0, 0, 0} : tiles_[tile][texel_index(x, y)].rgba;
+    return tile == kNoTile ? kUndrawn : tiles_[tile][texel_index(x, y)];
   }
 
   /// visit(x, y) for each opaque texel.
@@ -45,7 +48,7 @@ class LayerImage {
       const auto x0 = static_cast<std::uint32_t>(i % tiles_per_row_) * kTileSide;
       const auto y0 = static_cast<std::uint32_t>(i / tiles_per_row_) * kTileSide;
       for (std::uint32_t k = 0; k < kTileSide * kTileSide; ++k)
-        if (tiles_[tile_of_[i]][k].rgba[3] != 0) visit(x0 + k % kTileSide, y0 + k / kTileSide);
+        if (tiles_[tile_of_[i]][k].opaque()) visit(x0 + k % kTileSide, y0 + k / kTileSide);
     }
   }
 

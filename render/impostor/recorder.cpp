@@ -1,6 +1,7 @@
 #include "render/impostor/recorder.h"
 
 #include <cmath>
+#include <optional>
 
 #include "render/impostor/coverage.h"
 #include "render/impostor/slab_piece.h"
@@ -16,8 +17,9 @@ constexpr float kTouchOnly = 2.0F;  // added to the order of surfaces that miss 
 class TrianglePlane {
  public:
   TrianglePlane(const FrameTriangle& p, const ImpostorFrame& frame) {
-    std::array<Vec3, 3> normals{glm::cross(p[1], p[2]), glm::cross(p[2], p[0]), glm::cross(p[0], p[1])};
-    volume_ = glm::dot(p[0], normals[0]);
+    const std::array<Vec3, 3> normals{glm::cross(p[1].position, p[2].position), glm::cross(p[2].position, p[0].position),
+                                      glm::cross(p[0].position, p[1].position)};
+    volume_ = glm::dot(p[0].position, normals[0]);
     const double sign = volume_ < 0.0 ? -1.0 : 1.0;
     volume_ *= sign;
     for (int i = 0; i < 3; ++i) {
@@ -47,11 +49,14 @@ class TrianglePlane {
   double volume_ = 0.0;  // 0: seen edge-on
 };
 
+bool holds_centre(const RecordedTexel& texel) {
+  return texel.opaque() && texel.order < kTouchOnly;
+}
+
 /// A point of a surface that stands for a texel.
 struct SurfacePoint {
   Vec3 barycentric{0.0};
   double depth = 0.0;
-  bool at_centre = false;
 };
 
 class Recorder {
@@ -90,7 +95,7 @@ class Recorder {
       Triangle triangle;
       for (std::size_t k = 0; k < 3; ++k) {
         const std::uint32_t vertex = mesh.indices[i + k];
-        triangle.corners[k] = positions_[vertex];
+        triangle.corners[k] = vertices_[vertex];
         triangle.attributes.normal[k] = world_from_normal * Vec3(mesh.normals[vertex]);
         if (surface.texture() != nullptr) triangle.attributes.uv[k] = Vec2(mesh.uvs[vertex]);
       }
@@ -102,15 +107,17 @@ class Recorder {
     const Mat3 frame_from_world = glm::transpose(Mat3(frame_.right, frame_.up, frame_.forward));
     const Mat3 frame_from_mesh = frame_from_world * Mat3(object.world_from_object);
     const Vec3 origin = frame_from_world * (Vec3(object.world_from_object[3]) - frame_.reference_viewpoint);
-    positions_.resize(mesh.positions.size());
-    for (std::size_t i = 0; i < mesh.positions.size(); ++i) positions_[i] = frame_from_mesh * Vec3(mesh.positions[i]) + origin;
+    vertices_.resize(mesh.positions.size());
+    for (std::size_t i = 0; i < mesh.positions.size(); ++i)
+      vertices_[i] = frame_vertex(frame_, frame_from_mesh * Vec3(mesh.positions[i]) + origin);
   }
 
   void draw_triangle(const Triangle& triangle, const Surface& surface) {
     const auto& p = triangle.corners;
-    if (glm::cross(p[1] - p[0], p[2] - p[0]) == Vec3(0.0)) return;  // no ray ever hits it
+    if (glm::cross(p[1].position - p[0].position, p[2].position - p[0].position) == Vec3(0.0)) return;  // no ray ever hits it
     const TrianglePlane plane(p, frame_);
-    const double nearest = std::min({p[0].z, p[1].z, p[2].z}), farthest = std::max({p[0].z, p[1].z, p[2].z});
+    const double nearest = std::min({p[0].position.z, p[1].position.z, p[2].position.z});
+    const double farthest = std::max({p[0].position.z, p[1].position.z, p[2].position.z});
     for (std::size_t layer = first_layer_beyond(nearest); layer < layers_.size(); ++layer) {
       const bool last = layer + 1 == layers_.size();
       draw_piece(slab_piece(p, frame_, layer == 0 ? 0.0 : layers_[layer].near_m, last ? kInfinity : layers_[layer].far_m), layer, plane,
@@ -133,32 +140,35 @@ class Recorder {
 
   void draw_texel(std::uint32_t x, std::uint32_t y, const Piece& piece, std::size_t layer, const TrianglePlane& plane,
                   const Triangle& triangle, const Surface& surface) {
-    const SurfacePoint point = surface_point({x + 0.5, y + 0.5}, piece, layers_[layer], plane, layer);
-    if (!closed_ && !point.at_centre) return;
-    bool at_centre = point.at_centre;
-    if (const TexturePyramid* mask = surface.mask()) {
-      at_centre = at_centre && mask->passes(triangle.attributes.uv_at(point.barycentric));
-      if (!at_centre && !(closed_ && mask_may_pass(x, y, piece, triangle.attributes, *mask, point))) return;
-    }
-    const float order = depth_in(layers_[layer], point.depth) + (at_centre ? 0.0F : kTouchOnly);
+    const Vec2 centre(x + 0.5, y + 0.5);
+    std::optional<SurfacePoint> found = point_at(centre, layer, plane);
+    bool at_centre = found.has_value();
+    const TexturePyramid* mask = surface.mask();
+    if (at_centre && mask != nullptr) at_centre = mask->passes(triangle.attributes.uv_at(found->barycentric));
+    if (!at_centre && (!closed_ || holds_centre(images_[layer].get(x, y)))) return;
+    if (!found) found = outline_point(centre, piece);
+    if (!at_centre && mask != nullptr && !mask_may_pass(x, y, piece, triangle.attributes, *mask, *found)) return;
+
+    const float order = depth_in(layers_[layer], found->depth) + (at_centre ? 0.0F : kTouchOnly);
     RecordedTexel& texel = images_[layer].at(x, y);
-    if (texel.rgba[3] != 0 && texel.order <= order) return;
+    if (texel.opaque() && texel.order <= order) return;
     texel.order = order;
-    texel.rgba = surface.colour(triangle.attributes, point.barycentric, level_of_detail(plane, triangle.attributes, surface, point));
+    texel.rgba = surface.colour(triangle.attributes, found->barycentric, level_of_detail(plane, triangle.attributes, surface, *found));
   }
 
-  /// The surface at the texel's centre, or the point of the piece's outline nearest to it.
-  [[nodiscard]] SurfacePoint surface_point(const Vec2& centre, const Piece& piece, const Layer& slab, const TrianglePlane& plane,
-                                           std::size_t layer) const {
+  /// The surface at the texel's centre, if the triangle and the layer hold it.
+  [[nodiscard]] std::optional<SurfacePoint> point_at(const Vec2& centre, std::size_t layer, const TrianglePlane& plane) const {
     const Vec3 weights = plane.weights(centre);
     const double sum = weights.x + weights.y + weights.z;
-    if (std::min({weights.x, weights.y, weights.z}) >= 0.0 && sum > 0.0) {
-      const double depth = plane.volume() / sum;
-      const bool last = layer + 1 == layers_.size();
-      if ((layer == 0 || depth >= slab.near_m) && (last || depth <= slab.far_m)) return {weights / sum, depth, true};
-    }
+    if (weights.x < 0.0 || weights.y < 0.0 || weights.z < 0.0 || !(sum > 0.0)) return std::nullopt;
+    const double depth = plane.volume() / sum;
+    if ((layer > 0 && depth < layers_[layer].near_m) || (layer + 1 < layers_.size() && depth > layers_[layer].far_m)) return std::nullopt;
+    return SurfacePoint{weights / sum, depth};
+  }
+
+  [[nodiscard]] static SurfacePoint outline_point(const Vec2& centre, const Piece& piece) {
     const PieceVertex nearest = nearest_on_outline(piece, centre);
-    return {nearest.barycentric(), 1.0 / nearest.inverse_depth, false};
+    return {nearest.barycentric(), 1.0 / nearest.inverse_depth};
   }
 
   /// Place of a depth within its layer, 0 (near) to 1.
@@ -199,7 +209,7 @@ class Recorder {
   bool closed_;
   ClosedCoverage rows_;
   std::vector<LayerImage> images_;
-  std::vector<Vec3> positions_;  // of the part's vertices, in the impostor's frame
+  std::vector<FrameVertex> vertices_;  // of the part
 };
 
 }  // namespace

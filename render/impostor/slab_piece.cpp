@@ -6,9 +6,8 @@
 namespace standin {
 namespace {
 
-PieceVertex projected(const ImpostorFrame& frame, const Vec3& point, const Vec3& barycentric) {
-  const double inverse_depth = 1.0 / point.z;
-  return {texel_from_slope(frame, {point.x * inverse_depth, point.y * inverse_depth}), inverse_depth, inverse_depth * barycentric};
+PieceVertex piece_vertex(const FrameVertex& vertex, const Vec3& barycentric) {
+  return {vertex.texel, vertex.inverse_depth, vertex.inverse_depth * barycentric};
 }
 
 Vec3 unit(std::size_t i) {
@@ -19,11 +18,11 @@ Vec3 unit(std::size_t i) {
 
 /// Where the edge crosses the plane at `depth`; its ends lie on different sides.
 PieceVertex crossing(const FrameTriangle& triangle, const ImpostorFrame& frame, std::size_t a, std::size_t b, double depth) {
-  if (triangle[a].z > triangle[b].z) std::swap(a, b);
-  const Vec3 &from = triangle[a], &to = triangle[b];
+  if (triangle[a].position.z > triangle[b].position.z) std::swap(a, b);
+  const Vec3 &from = triangle[a].position, &to = triangle[b].position;
   const double share = (depth - from.z) / (to.z - from.z);
   const Vec3 point(from.x + share * (to.x - from.x), from.y + share * (to.y - from.y), depth);
-  return projected(frame, point, (1.0 - share) * unit(a) + share * unit(b));
+  return piece_vertex(frame_vertex(frame, point), (1.0 - share) * unit(a) + share * unit(b));
 }
 
 /// Keeps what lies on the side of `limit` where sign * (coordinate - limit) >= 0.
@@ -46,8 +45,8 @@ Piece slab_piece(const FrameTriangle& triangle, const ImpostorFrame& frame, doub
   Piece piece;
   for (std::size_t a = 0; a < 3; ++a) {
     const std::size_t b = (a + 1) % 3;
-    const double depth_a = triangle[a].z, depth_b = triangle[b].z;
-    if (near_m <= depth_a && depth_a <= far_m) piece.add(projected(frame, triangle[a], unit(a)));
+    const double depth_a = triangle[a].position.z, depth_b = triangle[b].position.z;
+    if (near_m <= depth_a && depth_a <= far_m) piece.add(piece_vertex(triangle[a], unit(a)));
     const auto add_crossing = [&](double depth) {
       if ((depth_a < depth && depth < depth_b) || (depth_b < depth && depth < depth_a)) piece.add(crossing(triangle, frame, a, b, depth));
     };

@@ -32,13 +32,24 @@ struct Piece {
   void add(const PieceVertex& vertex) { vertices[count++] = vertex; }
 };
 
-/// Corners in the impostor's frame: x right, y up, z the depth along forward (> 0), from the reference viewpoint.
-using FrameTriangle = std::array<Vec3, 3>;
-
 /// Texel coordinates of a slope.
 [[nodiscard]] inline Vec2 texel_from_slope(const ImpostorFrame& frame, const Vec2& slope) {
   return {(slope.x - frame.slope_min.x) / frame.slope_step.x, (frame.slope_min.y - slope.y) / frame.slope_step.y};
 }
+
+/// A vertex in the impostor's frame: x right, y up, z the depth along forward (> 0), from the reference viewpoint; and on the image.
+struct FrameVertex {
+  Vec3 position{0.0};
+  Vec2 texel{0.0};
+  double inverse_depth = 0.0;
+};
+
+[[nodiscard]] inline FrameVertex frame_vertex(const ImpostorFrame& frame, const Vec3& position) {
+  const double inverse_depth = 1.0 / position.z;
+  return {position, texel_from_slope(frame, {position.x * inverse_depth, position.y * inverse_depth}), inverse_depth};
+}
+
+using FrameTriangle = std::array<FrameVertex, 3>;
 
 [[nodiscard]] Piece slab_piece(const FrameTriangle& triangle, const ImpostorFrame& frame, double near_m, double far_m);
 

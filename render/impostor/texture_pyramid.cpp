@@ -29,76 +29,69 @@ Runs wrapped_runs(double low, double high, int size) {
   return runs;
 }
 
-int wrapped(int i, int size) {
-  const int r = i % size;
-  return r < 0 ? r + size : r;
-}
-
 }  // namespace
 
 TexturePyramid::TexturePyramid(const Texture& texture, int least_alpha) : texture_(texture), least_alpha_(least_alpha) {
-  for (int level = 0; width_of(level) > 1 || height_of(level) > 1; ++level) levels_.push_back(half(level));
+  levels_.push_back({texture.width, texture.height, Vec2(texture.width, texture.height), texture.rgba.data()});
+  while (levels_.back().width > 1 || levels_.back().height > 1) add_half_of(coarsest_level());
 }
 
-TexturePyramid::Texel TexturePyramid::fetch(int level, int x, int y) const {
-  const std::size_t index = 4 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(width_of(level)) + static_cast<std::size_t>(x));
-  const std::uint8_t* texel = (level == 0 ? texture_.rgba : levels_[static_cast<std::size_t>(level) - 1].rgbw).data() + index;
-  const float weight = level == 0 ? (texel[3] >= least_alpha_ ? 255.0F : 0.0F) : static_cast<float>(texel[3]);
-  return {{texel[0], texel[1], texel[2]}, weight};
-}
-
-TexturePyramid::Level TexturePyramid::half(int level) const {
-  Level coarse{(width_of(level) + 1) / 2, (height_of(level) + 1) / 2, {}};
-  coarse.rgbw.resize(4 * static_cast<std::size_t>(coarse.width) * static_cast<std::size_t>(coarse.height));
-  std::uint8_t* out = coarse.rgbw.data();
+void TexturePyramid::add_half_of(int level) {
+  const Level fine = levels_[static_cast<std::size_t>(level)];
+  Level coarse{(fine.width + 1) / 2, (fine.height + 1) / 2, 0.5 * fine.size_texels, nullptr};
+  std::vector<std::uint8_t>& texels =
+      storage_.emplace_back(4 * static_cast<std::size_t>(coarse.width) * static_cast<std::size_t>(coarse.height));
+  coarse.rgbw = texels.data();
+  std::uint8_t* out = texels.data();
   for (int y = 0; y < coarse.height; ++y)
     for (int x = 0; x < coarse.width; ++x, out += 4) {
-      glm::vec3 sum{0.0F};
-      float weight = 0.0F, count = 0.0F;
-      for (int j = 2 * y; j < std::min(2 * y + 2, height_of(level)); ++j)
-        for (int i = 2 * x; i < std::min(2 * x + 2, width_of(level)); ++i, count += 1.0F) {
-          const Texel texel = fetch(level, i, j);
-          sum += texel.weight * texel.colour;
-          weight += texel.weight;
+      WeightedColour sum;
+      float count = 0.0F;
+      for (int j = 2 * y; j < std::min(2 * y + 2, fine.height); ++j)
+        for (int i = 2 * x; i < std::min(2 * x + 2, fine.width); ++i, count += 1.0F) {
+          const std::uint8_t* texel = texel_at(fine, i, j);
+          const float weight = weight_of(level, texel);
+          sum.colour += weight * glm::vec3(texel[0], texel[1], texel[2]);
+          sum.weight += weight;
         }
-      const glm::vec3 mean = weight > 0.0F ? sum / weight : glm::vec3(0.0F);
+      const glm::vec3 mean = sum.weight > 0.0F ? sum.colour / sum.weight : glm::vec3(0.0F);
       for (int c = 0; c < 3; ++c) out[c] = static_cast<std::uint8_t>(mean[c] + 0.5F);
-      out[3] = static_cast<std::uint8_t>(std::ceil(weight / count));
+      out[3] = static_cast<std::uint8_t>(std::ceil(sum.weight / count));
     }
-  return coarse;
+  levels_.push_back(coarse);
 }
 
-TexturePyramid::Texel TexturePyramid::bilinear(int level, const Vec2& uv) const {
-  const double scale = std::ldexp(1.0, -level);
-  const double x = (uv.x - std::floor(uv.x)) * texture_.width * scale - 0.5, y = (uv.y - std::floor(uv.y)) * texture_.height * scale - 0.5;
-  const double x_floor = std::floor(x), y_floor = std::floor(y);
-  const auto fx = static_cast<float>(x - x_floor), fy = static_cast<float>(y - y_floor);
-  const int w = width_of(level), h = height_of(level);
-  const int x0 = wrapped(static_cast<int>(x_floor), w), y0 = wrapped(static_cast<int>(y_floor), h);
-  const int x1 = x0 + 1 == w ? 0 : x0 + 1, y1 = y0 + 1 == h ? 0 : y0 + 1;
-  Texel sum{glm::vec3(0.0F), 0.0F};  // of colours times weight
-  const auto add = [&](int i, int j, float share) {
-    const Texel texel = fetch(level, i, j);
-    sum.colour += share * texel.weight * texel.colour;
-    sum.weight += share * texel.weight;
+TexturePyramid::WeightedColour TexturePyramid::bilinear(int level, const Vec2& wrapped_uv) const {
+  const Level& texels = levels_[static_cast<std::size_t>(level)];
+  const Vec2 position = wrapped_uv * texels.size_texels - 0.5;
+  const Vec2 corner = glm::floor(position);
+  const glm::vec2 share(position - corner);
+  const auto wrapped = [](int i, int size) { return i < 0 ? i + size : (i >= size ? i - size : i); };
+  const int x0 = wrapped(static_cast<int>(corner.x), texels.width), y0 = wrapped(static_cast<int>(corner.y), texels.height);
+  const int x1 = wrapped(x0 + 1, texels.width), y1 = wrapped(y0 + 1, texels.height);
+  WeightedColour sum;
+  const auto add = [&](int x, int y, float area) {
+    const std::uint8_t* texel = texel_at(texels, x, y);
+    const float weight = area * weight_of(level, texel);
+    sum.colour += weight * glm::vec3(texel[0], texel[1], texel[2]);
+    sum.weight += weight;
   };
-  add(x0, y0, (1.0F - fx) * (1.0F - fy));
-  add(x1, y0, fx * (1.0F - fy));
-  add(x0, y1, (1.0F - fx) * fy);
-  add(x1, y1, fx * fy);
+  add(x0, y0, (1.0F - share.x) * (1.0F - share.y));
+  add(x1, y0, share.x * (1.0F - share.y));
+  add(x0, y1, (1.0F - share.x) * share.y);
+  add(x1, y1, share.x * share.y);
   return sum;
 }
 
 TexturePyramid::Sample TexturePyramid::sample(const Vec2& uv, double level) const {
+  const Vec2 wrapped_uv = uv - glm::floor(uv);
   const double clamped = std::clamp(level, 0.0, static_cast<double>(coarsest_level()));
   for (int fine = static_cast<int>(clamped); fine <= coarsest_level(); ++fine) {
-    const double fraction = std::max(0.0, clamped - fine);
-    Texel sum = bilinear(fine, uv);
-    if (fraction > 0.0) {
-      const Texel coarse = bilinear(fine + 1, uv);
-      const auto share = static_cast<float>(fraction);
-      sum.colour += share * (coarse.colour - sum.colour);
-      sum.weight += share * (coarse.weight - sum.weight);
+    WeightedColour sum = bilinear(fine, wrapped_uv);
+    if (const double share = clamped - fine; share > 0.0) {
+      const WeightedColour coarse = bilinear(fine + 1, wrapped_uv);
+      sum.colour += static_cast<float>(share) * (coarse.colour - sum.colour);
+      sum.weight += static_cast<float>(share) * (coarse.weight - sum.weight);
     }
     if (sum.weight > 0.0F) return {sum.colour / (255.0F * sum.weight), sum.weight / 255.0F};
   }
@@ -109,13 +102,14 @@ bool TexturePyramid::passes(const Vec2& uv) const {
   const Vec2 wrapped_uv = uv - glm::floor(uv);
   const int x = std::min(static_cast<int>(wrapped_uv.x * texture_.width), texture_.width - 1);
   const int y = std::min(static_cast<int>(wrapped_uv.y * texture_.height), texture_.height - 1);
-  return fetch(0, x, y).weight > 0.0F;
+  return weight_of(0, texel_at(levels_[0], x, y)) > 0.0F;
 }
 
 bool TexturePyramid::any_in(int level, int x0, int x1, int y0, int y1) const {
+  const Level& texels = levels_[static_cast<std::size_t>(level)];
   for (int y = y0 >> level; y <= y1 >> level; ++y)
     for (int x = x0 >> level; x <= x1 >> level; ++x)
-      if (fetch(level, x, y).weight > 0.0F) return true;
+      if (weight_of(level, texel_at(texels, x, y)) > 0.0F) return true;
   return false;
 }
 

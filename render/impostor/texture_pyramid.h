@@ -32,30 +32,33 @@ class TexturePyramid {
 
   [[nodiscard]] int width() const { return texture_.width; }
   [[nodiscard]] int height() const { return texture_.height; }
-  [[nodiscard]] int coarsest_level() const { return static_cast<int>(levels_.size()); }
+  [[nodiscard]] int coarsest_level() const { return static_cast<int>(levels_.size()) - 1; }
 
  private:
   struct Level {
     int width = 0;
     int height = 0;
-    std::vector<std::uint8_t> rgbw;
+    Vec2 size_texels{0.0};  // of the whole texture, in texels of this level (a fraction where a border texel is not full)
+    const std::uint8_t* rgbw = nullptr;
   };
-  struct Texel {
-    glm::vec3 colour;
-    float weight;
+  struct WeightedColour {
+    glm::vec3 colour{0.0F};  // times weight
+    float weight = 0.0F;
   };
-  [[nodiscard]] int width_of(int level) const { return level == 0 ? texture_.width : levels_[static_cast<std::size_t>(level) - 1].width; }
-  [[nodiscard]] int height_of(int level) const {
-    return level == 0 ? texture_.height : levels_[static_cast<std::size_t>(level) - 1].height;
+  [[nodiscard]] float weight_of(int level, const std::uint8_t* texel) const {
+    return level > 0 ? texel[3] : (texel[3] >= least_alpha_ ? 255.0F : 0.0F);
   }
-  [[nodiscard]] Texel fetch(int level, int x, int y) const;
-  [[nodiscard]] Texel bilinear(int level, const Vec2& uv) const;
-  [[nodiscard]] Level half(int level) const;
+  [[nodiscard]] static const std::uint8_t* texel_at(const Level& level, int x, int y) {
+    return level.rgbw + 4 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(level.width) + static_cast<std::size_t>(x));
+  }
+  [[nodiscard]] WeightedColour bilinear(int level, const Vec2& wrapped_uv) const;
+  void add_half_of(int level);
   [[nodiscard]] bool any_in(int level, int x0, int x1, int y0, int y1) const;
 
   const Texture& texture_;
   int least_alpha_ = 0;
-  std::vector<Level> levels_;  // coarser than the texture itself; texel x of level k covers texels [x 2^k, (x+1) 2^k)
+  std::vector<Level> levels_;                       // 0 is the texture; texel x of level k covers texels [x 2^k, (x+1) 2^k) of it
+  std::vector<std::vector<std::uint8_t>> storage_;  // of the levels from 1 on
 };
 
 /// The pyramids of a scene's materials, each built when first asked for. Safe to share between threads.
