@@ -7,6 +7,7 @@
 #include "render/impostor/layers.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 
@@ -100,20 +101,20 @@ class Spacing {
     return setup_.strict ? std::min(near, deep_front(t_far + setup_.s)) : near;
   }
 
-  /// Layers per metre at t, such that the integral between two layers is exact wherever a single bound holds (math.md 1.4).
-  [[nodiscard]] double density(double t) const {
-    double densest = 0.5 * parallax_density(t);  // a layer reaches one range behind itself and the next one's range in front of that
-    for (int axis = 0; axis < 2; ++axis) {
-      const double w = half_slope_[axis], tau = texel_slope_[axis], half_n = 0.5 * setup_.near_border[axis];
-      const double near_b = half_n + (setup_.strict ? w : w - tau) * setup_.s;
-      densest = std::max(densest, moebius_density(t, setup_.s, near_b, tau));
-      if (setup_.kind == LayerSetup::Kind::kBox) {
-        const double far_b = half_n + w * std::max(0.0, deepest_);
-        densest = std::max(densest, moebius_density(t + setup_.cell_depth, setup_.s - setup_.cell_depth, far_b, tau));
-      } else if (w + setup_.tan_half[axis] > tau) {
-        densest = std::max(densest, -1.0 / ((t + setup_.s) * std::log1p(-tau / (w + setup_.tan_half[axis]))));
-      }
-    }
+  [[nodiscard]] Vec2 half_slope() const { return half_slope_; }
+  [[nodiscard]] Vec2 texel_slope() const { return texel_slope_; }
+  [[nodiscard]] double corner_radius() const { return corner_radius_; }
+
+  /// Ranges per metre that deeper viewpoints ask for at distance a from P: 1/L grows by slope_length / kappa with each.
+  [[nodiscard]] double deep_density(double a) const {
+    if (!setup_.strict || deepest_ < 0.0) return 0.0;
+    const auto at = [&](double q) {
+      const double kappa = deep_slope_ * q + deep_offset_, length = a + q;
+      return kappa > slope_length_ * length ? kappa / (slope_length_ * length * length) : 0.0;
+    };
+    double densest = std::max(at(0.0), deepest_ < kInfinity ? at(deepest_) : 0.0);
+    const double turning_point = deep_slope_ > 0.0 ? a - 2.0 * deep_offset_ / deep_slope_ : -1.0;
+    if (turning_point > 0.0 && turning_point < deepest_) densest = std::max(densest, at(turning_point));
     return densest;
   }
 
@@ -160,31 +161,6 @@ class Spacing {
     return least;
   }
 
-  /// Layers per metre of the recursion c = k t (t + s) / (b - k t), which multiplies 1 + s/t by b / (b + k s) at each step.
-  [[nodiscard]] static double moebius_density(double t, double s, double b, double k) {
-    if (b - k * t <= 0.0 || k <= 0.0) return 0.0;
-    const double x = k * s / b;
-    const double per_step = x > -1.0 && x != 0.0 ? std::log1p(x) / x : 1.0;
-    return b / (k * t * (t + s) * per_step);
-  }
-
-  [[nodiscard]] double parallax_density(double t) const {
-    const double near =
-        moebius_density(t, setup_.s, divergence(setup_.s, corner_radius_, setup_.alpha_rad), 2.0 * std::sin(setup_.alpha_rad));
-    return setup_.strict && deepest_ >= 0.0 ? std::max(near, deep_density(t + setup_.s)) : near;
-  }
-
-  [[nodiscard]] double deep_density(double a) const {
-    const auto at = [&](double q) {
-      const double kappa = deep_slope_ * q + deep_offset_, length = a + q;
-      return kappa > slope_length_ * length ? kappa / (slope_length_ * length * length) : 0.0;
-    };
-    double densest = std::max(at(0.0), deepest_ < kInfinity ? at(deepest_) : 0.0);
-    const double turning_point = deep_slope_ > 0.0 ? a - 2.0 * deep_offset_ / deep_slope_ : -1.0;
-    if (turning_point > 0.0 && turning_point < deepest_) densest = std::max(densest, at(turning_point));
-    return densest;
-  }
-
   const LayerSetup& setup_;
   Vec2 half_slope_{0.0};        // W
   Vec2 texel_slope_{0.0};       // tau
@@ -193,6 +169,53 @@ class Spacing {
   double deep_slope_ = 0.0;     // U
   double deep_offset_ = 0.0;    // R
   double deepest_ = 0.0;        // largest q, negative: the cell ends in front of P
+};
+
+/// The recursion c = k t (t + s) / (b - k t), which multiplies 1 + s/t by b / (b + k s) at each step: layers per metre, such that their
+/// integral between two layers is the number of steps exactly (math.md 1.4).
+class MoebiusSteps {
+ public:
+  MoebiusSteps() = default;
+  MoebiusSteps(double s, double b, double k) : s_(s), b_(b), k_(k) {
+    const double x = b > 0.0 ? k * s / b : 0.0;
+    scale_ = k > 0.0 ? b / k * (x > -1.0 && x != 0.0 ? x / std::log1p(x) : 1.0) : 0.0;
+  }
+  [[nodiscard]] double per_metre(double t) const { return b_ - k_ * t > 0.0 ? scale_ / (t * (t + s_)) : 0.0; }
+
+ private:
+  double s_ = 0.0, b_ = 0.0, k_ = 0.0, scale_ = 0.0;
+};
+
+/// Layers per metre at any distance: the densest of all bounds.
+class LayerDensity {
+ public:
+  LayerDensity(const LayerSetup& setup, const Spacing& spacing) : setup_(setup), spacing_(spacing) {
+    parallax_ = MoebiusSteps(setup.s, divergence(setup.s, spacing.corner_radius(), setup.alpha_rad), 2.0 * std::sin(setup.alpha_rad));
+    for (int axis = 0; axis < 2; ++axis) {
+      const double w = spacing.half_slope()[axis], tau = spacing.texel_slope()[axis], half_n = 0.5 * setup.near_border[axis];
+      const auto i = static_cast<std::size_t>(axis);
+      near_[i] = MoebiusSteps(setup.s, half_n + (setup.strict ? w : w - tau) * setup.s, tau);
+      if (setup.kind == LayerSetup::Kind::kBox)
+        far_[i] = MoebiusSteps(setup.s - setup.cell_depth, half_n + w * std::max(0.0, setup.cell_depth - setup.s), tau);
+      else if (w + setup.tan_half[axis] > tau)
+        shaft_ = std::max(shaft_, -1.0 / std::log1p(-tau / (w + setup.tan_half[axis])));
+    }
+  }
+
+  [[nodiscard]] double per_metre(double t) const {
+    const double a = t + setup_.s, t_far = t + setup_.cell_depth;
+    // A layer reaches one parallax range behind itself, and the next one's range in front of that.
+    const double parallax = 0.5 * std::max(parallax_.per_metre(t), spacing_.deep_density(a));
+    const double texel = std::max(near_[0].per_metre(t), near_[1].per_metre(t));
+    return std::max({parallax, texel, shaft_ / a, far_[0].per_metre(t_far), far_[1].per_metre(t_far)});
+  }
+
+ private:
+  const LayerSetup& setup_;
+  const Spacing& spacing_;
+  MoebiusSteps parallax_;
+  std::array<MoebiusSteps, 2> near_, far_;
+  double shaft_ = 0.0;  // layers per e-fold of the distance from P
 };
 
 /// The step that follows a layer at t: texel limit, parallax limit, and never beyond the object.
@@ -284,21 +307,22 @@ double estimated_layer_count(const LayerSetup& setup) {
   const Spacing spacing(setup);
   const double t_end = setup.t0 + setup.depth;
   const double t_first = setup.t0 + spacing.behind(setup.t0);
-  if (t_first >= t_end) return 1.0;
+  if (t_first >= t_end || t_first + spacing.behind(t_first) >= t_end) return 1.0;
   double t_last = std::min(t_end, spacing.last_layer_at());
   if (t_last < kInfinity) t_last = std::min(t_last, t_end < kInfinity ? t_end - spacing.in_front(t_end) : t_last);
   if (t_last == kInfinity) return kInfinity;
   if (t_last <= t_first) return 2.0;
   // Three-point Gauss-Legendre on panels of equal ratio: the densities are smooth in log t, with a kink where the binding bound changes.
-  constexpr int kPanels = 12;
+  constexpr int kPanels = 8;
   constexpr double kNode = 0.77459666924148337704, kWeights[] = {5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0};
   const double panel = std::log(t_last / t_first) / kPanels;
-  double sum = 0.0;
-  for (int i = 0; i < kPanels; ++i)
-    for (int j = 0; j < 3; ++j) {
-      const double t = t_first * std::exp(panel * (i + 0.5 + 0.5 * kNode * (j - 1)));
-      sum += kWeights[j] * panel * t * spacing.density(t);
-    }
+  const double ratio = std::exp(panel), node_ratio = std::exp(0.5 * kNode * panel);
+  const LayerDensity density(setup, spacing);
+  double sum = 0.0, middle = t_first * std::sqrt(ratio);
+  for (int i = 0; i < kPanels; ++i, middle *= ratio) {
+    const double nodes[] = {middle / node_ratio, middle, middle * node_ratio};
+    for (int j = 0; j < 3; ++j) sum += kWeights[j] * panel * nodes[j] * density.per_metre(nodes[j]);
+  }
   return 1.0 + std::ceil(sum);
 }
 
