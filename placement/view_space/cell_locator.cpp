@@ -41,7 +41,7 @@ std::optional<std::uint32_t> CellLocator::find(const Vec3& position) const {
     const CellKey slab{finest_level_, {index[axis], index[axis], index[axis]}};
     on_border[axis] = coordinate == grid_.cube(slab).min[static_cast<int>(axis)];
   }
-  // Eight ways to step down across borders, x last: the furthest up in x, then y, then z comes first.
+  // Eight ways to step down across borders; those that do not in x come first, of these those that do not in y.
   for (int down = 0; down < 8; ++down) {
     const std::array<bool, 3> step = {(down & 4) != 0, (down & 2) != 0, (down & 1) != 0};
     std::array<int, 3> at = index;

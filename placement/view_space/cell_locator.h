@@ -1,7 +1,8 @@
 // Which cell holds a position: the one place that knows the border rule.
 //
-// Cells are half-open at the upper end, the last one closed: among the leaf cells whose closed box holds the position, it is the one whose
-// cube reaches furthest up in x, then y, then z. A cube's box may end before the cube does, so a position can lie in a cube and in no cell.
+// Cells are half-open at the upper end, the last one closed: of the leaf cells whose closed box holds the position, it is the one in whose
+// cube the position is not on the upper border in x, if there is one; then likewise in y, then in z. A cube's box may end before the cube
+// does, so a position can lie in a cube and in no cell.
 #pragma once
 
 #include <cstdint>

@@ -62,7 +62,9 @@ class Search {
       result_.worst_predicted_ms = predicted_ms;
       result_.worst_interval = leaf.interval;
     }
-    if (predicted_ms > budget_ms_) result_.hot.push_back({leaf.interval, estimator_.bound_of(cell_, leaf.seen)});
+    if (predicted_ms <= budget_ms_) return;
+    result_.hot.push_back({leaf.interval, result_.seen.size(), leaf.seen.size()});
+    result_.seen.insert(result_.seen.end(), leaf.seen.begin(), leaf.seen.end());
   }
 
   const RegionEstimator& estimator_;

@@ -11,16 +11,21 @@
 namespace standin {
 namespace {
 
-/// A cell that has been searched.
+/// A cell that has been searched. Terms are made at the very end, from `found` and the cell's costs: they are most of the memory.
 struct SearchedCell {
   Cell cell;
   std::vector<Box> chain;
-  std::vector<HotRegion> hot;
-  [[nodiscard]] std::uint64_t term_count() const {
-    return std::accumulate(hot.begin(), hot.end(), std::uint64_t{0},
-                           [](std::uint64_t sum, const HotRegion& region) { return sum + region.bound.terms.size(); });
-  }
+  DirectionSearchResult found;
 };
+
+std::vector<DirectionInterval> used_intervals(const std::vector<SearchedCell>& searched) {
+  std::vector<DirectionInterval> intervals;
+  for (const SearchedCell& one : searched)
+    for (const HotRegion& region : one.found.hot) intervals.push_back(region.interval);
+  std::sort(intervals.begin(), intervals.end());
+  intervals.erase(std::unique(intervals.begin(), intervals.end()), intervals.end());
+  return intervals;
+}
 
 class Subdivider {
  public:
@@ -38,11 +43,27 @@ class Subdivider {
 
   std::vector<SearchedCell> run() {
     std::vector<SearchedCell> frontier = search_leaves();
-    for (const SearchedCell& searched : frontier) terms_ += searched.term_count();
+    for (const SearchedCell& searched : frontier) terms_ += searched.found.seen.size();
     std::vector<SearchedCell> done;
     while (!frontier.empty()) frontier = halve(std::move(frontier), done);
     std::sort(done.begin(), done.end(), [](const SearchedCell& a, const SearchedCell& b) { return a.cell.key < b.cell.key; });
     return done;
+  }
+
+  // The terms of each cell's CPVs, in order; a searched cell is freed once its terms are made.
+  [[nodiscard]] Subdivision assemble(std::vector<SearchedCell> searched) const {
+    Subdivision result;
+    result.intervals = used_intervals(searched);
+    result.visible_sets = visibility_.sets;
+    result.terms.reserve(terms_);
+    for (SearchedCell& one : searched) {
+      budget_.check();
+      result.worst_predicted_ms = std::max(result.worst_predicted_ms, one.cell.worst_predicted_ms);
+      result.cells.push_back(one.cell);
+      add_cpvs(one, result);
+      one = {};
+    }
+    return result;
   }
 
   [[nodiscard]] std::uint64_t cells_not_halved() const { return cells_not_halved_; }
@@ -60,11 +81,18 @@ class Subdivider {
     return static_cast<std::int32_t>(found - visibility_.cells.begin());
   }
 
+  [[nodiscard]] CellCosts costs_of(const Cell& cell, std::vector<Box> chain) const {
+    const auto& visible = cell.visible_set < 0 ? all_objects_ : visibility_.sets[static_cast<std::size_t>(cell.visible_set)];
+    return estimator_.cell_costs(std::move(chain), visible);
+  }
+
   [[nodiscard]] SearchedCell search(const CellKey& key, std::vector<Box> chain, std::int32_t visible_set) const {
-    const auto& visible = visible_set < 0 ? all_objects_ : visibility_.sets[static_cast<std::size_t>(visible_set)];
-    const CellCosts costs = estimator_.cell_costs(chain, visible);
-    DirectionSearchResult found = search_directions(estimator_, costs, options_.predicted_budget_ms);
-    return {{key, chain.front(), visible_set, found.worst_predicted_ms, found.worst_interval}, std::move(chain), std::move(found.hot)};
+    SearchedCell searched{{key, chain.front(), visible_set, 0.0, {}}, std::move(chain), {}};
+    searched.found = search_directions(estimator_, costs_of(searched.cell, searched.chain), options_.predicted_budget_ms);
+    searched.found.seen.shrink_to_fit();
+    searched.cell.worst_predicted_ms = searched.found.worst_predicted_ms;
+    searched.cell.worst_interval = searched.found.worst_interval;
+    return searched;
   }
 
   [[nodiscard]] std::vector<SearchedCell> search_leaves() const {
@@ -102,10 +130,24 @@ class Subdivider {
     return children;
   }
 
+  // CPVs of the last cell of `result`.
+  void add_cpvs(const SearchedCell& searched, Subdivision& result) const {
+    if (searched.found.hot.empty()) return;
+    const CellCosts costs = costs_of(searched.cell, searched.chain);
+    const auto cell = static_cast<std::uint32_t>(result.cells.size() - 1);
+    for (const HotRegion& region : searched.found.hot) {
+      const RegionBound bound = estimator_.bound_of(costs, searched.found.seen_in(region));
+      const auto at = std::lower_bound(result.intervals.begin(), result.intervals.end(), region.interval);
+      result.cpvs.push_back({cell, static_cast<std::uint32_t>(at - result.intervals.begin()), bound.pixels_capped, bound.constant_ms,
+                             bound.predicted_ms, result.terms.size(), static_cast<std::uint32_t>(bound.terms.size())});
+      result.terms.insert(result.terms.end(), bound.terms.begin(), bound.terms.end());
+    }
+  }
+
   // Cells that stay leaves move to `done`; returns the children of the others.
   [[nodiscard]] std::vector<SearchedCell> halve(std::vector<SearchedCell> frontier, std::vector<SearchedCell>& done) {
     const auto first_cold = std::stable_partition(frontier.begin(), frontier.end(), [this](const SearchedCell& searched) {
-      return !searched.hot.empty() && searched.cell.key.level < space_.finest_level;
+      return !searched.found.hot.empty() && searched.cell.key.level < space_.finest_level;
     });
     std::move(first_cold, frontier.end(), std::back_inserter(done));
     frontier.erase(first_cold, frontier.end());
@@ -117,10 +159,10 @@ class Subdivider {
       const std::size_t first = next;
       auto batch = search_children(frontier, child_tasks(frontier, next));
       for (std::size_t i = first; i < next; ++i) {
-        terms_ -= frontier[i].term_count();
+        terms_ -= frontier[i].found.seen.size();
         frontier[i] = {};
       }
-      for (const SearchedCell& child : batch) terms_ += child.term_count();
+      for (const SearchedCell& child : batch) terms_ += child.found.seen.size();
       std::move(batch.begin(), batch.end(), std::back_inserter(children));
     }
     cells_not_halved_ += frontier.size() - next;
@@ -139,45 +181,13 @@ class Subdivider {
   std::uint64_t cells_not_halved_ = 0;
 };
 
-std::vector<DirectionInterval> used_intervals(const std::vector<SearchedCell>& searched) {
-  std::vector<DirectionInterval> intervals;
-  for (const SearchedCell& one : searched)
-    for (const HotRegion& region : one.hot) intervals.push_back(region.interval);
-  std::sort(intervals.begin(), intervals.end());
-  intervals.erase(std::unique(intervals.begin(), intervals.end()), intervals.end());
-  return intervals;
-}
-
-// Frees each searched cell once its terms are copied: the terms are most of the memory.
-Subdivision assemble(std::vector<SearchedCell> searched) {
-  Subdivision result;
-  result.intervals = used_intervals(searched);
-  std::uint64_t term_count = 0;
-  for (const SearchedCell& one : searched) term_count += one.term_count();
-  result.terms.reserve(term_count);
-  for (SearchedCell& one : searched) {
-    const auto cell_id = static_cast<std::uint32_t>(result.cells.size());
-    result.cells.push_back(one.cell);
-    result.worst_predicted_ms = std::max(result.worst_predicted_ms, one.cell.worst_predicted_ms);
-    for (const auto& [interval, bound] : one.hot) {
-      const auto at = std::lower_bound(result.intervals.begin(), result.intervals.end(), interval);
-      result.cpvs.push_back({cell_id, static_cast<std::uint32_t>(at - result.intervals.begin()), bound.pixels_capped, bound.constant_ms,
-                             bound.predicted_ms, result.terms.size(), static_cast<std::uint32_t>(bound.terms.size())});
-      result.terms.insert(result.terms.end(), bound.terms.begin(), bound.terms.end());
-    }
-    one = {};
-  }
-  return result;
-}
-
 }  // namespace
 
 Subdivision subdivide(const Scene& scene, const std::vector<std::uint32_t>& hierarchy_rank, const ViewSpace& view_space,
                       const Visibility& visibility, const TimeModel& model, const Camera& camera, const ViewSpaceOptions& options,
                       const SubdivisionOptions& subdivision_options, const WorkBudget& budget) {
   Subdivider subdivider(scene, hierarchy_rank, view_space, visibility, model, camera, options.interval_deg, subdivision_options, budget);
-  Subdivision result = assemble(subdivider.run());
-  result.visible_sets = visibility.sets;
+  Subdivision result = subdivider.assemble(subdivider.run());
   if (subdivider.cells_not_halved() > 0)
     result.left_out.push_back("halving " + std::to_string(subdivider.cells_not_halved()) + " more hot cells in position: more than " +
                               std::to_string(subdivision_options.max_terms) + " object terms otherwise");

@@ -57,7 +57,7 @@ struct Subdivision {
 struct SubdivisionOptions {
   int threads = 1;
   double predicted_budget_ms = 0.0;      // a region is a CPV when its predicted bound exceeds this
-  std::uint64_t max_terms = 30'000'000;  // 16 bytes each; hot cells are no longer halved beyond it
+  std::uint64_t max_terms = 20'000'000;  // 20 bytes each while it runs; hot cells are no longer halved beyond it
 };
 
 /// Visible sets belong to cubes of the leaf level: `visible_sets[i]` to `visible_cells[i]` (sorted); empty: no visibility. Finer cells

@@ -1,10 +1,11 @@
 // The walk view space: where an eye 1.7 m above the ground stands clear of objects.
 //
 // Rays straight down on a fine grid find the highest surface under free sky; ground.h tells the ground from the tops of objects (a literal
-// reading would put people on roofs). A square of the grid is taken as a whole or not at all: rays at eye height must leave it, and 0.3 m
+// reading would put people on roofs). A square of the grid is taken as a whole or not at all: rays at eye height must find it, and 0.3 m
 // around it, free. Squares are gathered into columns of the size of the finest cells, each with the eye heights of its own ground and 0.1 m
 // of slack, and equal neighbours are merged, so that the boxes hold no position that was not found free.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -21,7 +22,7 @@ constexpr int kSquaresPerColumn = 4;
 constexpr double kMostSquares = 4e6;
 constexpr double kClearance_m = 0.3;
 constexpr double kEyeSlack_m = 0.1;
-constexpr double kMaxSlope = 0.7;   // 35 degrees
+constexpr double kMaxSlope = 0.45;  // 24 degrees: steeper than streets, and no way up a car by its bonnet
 constexpr double kMaxRise_m = 2.5;  // higher steps are objects, however coarse the grid
 // A column whose ground rises by more is kept as single squares: its lowest eye would stand too low at its upper end.
 constexpr std::int32_t kMaxColumnRise_cm = 80;
@@ -65,16 +66,18 @@ HeightField measure_heights(const Scene& scene, const Raytracer& raytracer, doub
   return field;
 }
 
-// Whether rays at eye height from the square's centre reach past its border and corners without meeting anything.
+// Whether the square and its surroundings are free at eye height: no ray along the border of the enlarged square meets anything (what
+// reaches in from outside crosses it), nor one along its diagonals.
 bool stands_clear(const Raytracer& raytracer, const Vec3& eye, double side_m) {
-  for (int dx = -1; dx <= 1; ++dx)
-    for (int dz = -1; dz <= 1; ++dz) {
-      if (dx == 0 && dz == 0) continue;
-      const double length = std::hypot(dx, dz);
-      const Vec3 direction(dx / length, 0.0, dz / length);
-      if (!raytracer.all(eye, direction, 0.0, 0.5 * side_m * length + kClearance_m).empty()) return false;
-    }
-  return true;
+  const double reach_m = 0.5 * side_m + kClearance_m;
+  const std::array<Vec3, 4> corners = {eye + Vec3(-reach_m, 0, -reach_m), eye + Vec3(reach_m, 0, -reach_m), eye + Vec3(reach_m, 0, reach_m),
+                                       eye + Vec3(-reach_m, 0, reach_m)};
+  constexpr std::array<std::array<std::size_t, 2>, 6> kRays = {{{0, 1}, {1, 2}, {2, 3}, {3, 0}, {0, 2}, {1, 3}}};
+  return std::none_of(kRays.begin(), kRays.end(), [&](const auto& ray) {
+    const Vec3 along = corners[ray[1]] - corners[ray[0]];
+    const double length_m = glm::length(along);
+    return !raytracer.all(corners[ray[0]], along / length_m, 0.0, length_m).empty();
+  });
 }
 
 // One entry per square; empty where nobody can stand.

@@ -1,0 +1,342 @@
+#include "placement/view_space/subdivision.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <map>
+#include <set>
+
+#include "placement/view_space/cell_boxes.h"
+#include "placement/view_space/cell_locator.h"
+#include "render/base/error.h"
+#include "tests/support/ascii_world.h"
+
+namespace standin {
+namespace {
+
+constexpr std::uint64_t kSeed = 515;
+
+struct World {
+  Scene scene;
+  ViewSpace space;
+  ViewSpaceOptions options;
+  Camera camera;
+  std::vector<std::uint32_t> rank;
+
+  World(const std::vector<std::string>& plan, std::vector<Box> boxes, ViewSpaceOptions given = {})
+      : scene(test::ascii_world(plan)),
+        space(make_box_view_space(std::move(boxes), given)),
+        options(given),
+        rank(test::identity_rank(scene)) {}
+
+  [[nodiscard]] Subdivision subdivide_for(double budget_ms, const TimeModel& model, const Visibility& visibility = {},
+                                          SubdivisionOptions given = {}) const {
+    given.predicted_budget_ms = budget_ms;
+    return subdivide(scene, rank, space, visibility, model, camera, options, given, {});
+  }
+  [[nodiscard]] RegionEstimator estimator(const TimeModel& model) const { return {scene, rank, model, camera, options.interval_deg}; }
+  [[nodiscard]] std::vector<std::uint32_t> all() const { return rank; }
+};
+
+// A forest of 9 trees 80 m to the east of a small view space.
+World forest_world() {
+  return {{".........TTT", ".........TTT", ".........TTT"}, {{{10, 1.6, 13}, {14, 1.8, 17}}}};
+}
+
+World small_town(int refine_levels = 1) {
+  ViewSpaceOptions options;
+  options.leaf_m = 20.0;
+  options.refine_levels = refine_levels;
+  options.interval_deg = 22.5;
+  return {{"#..T#.", "..o...", "T.#.T.", "...o.#"},
+          {{{10, 1.6, 0}, {30, 1.8, 10}}, {{0, 1.6, 10}, {60, 1.8, 20}}, {{30, 1.6, 20}, {40, 1.8, 40}}},
+          options};
+}
+
+using Region = std::pair<CellKey, DirectionInterval>;
+
+std::map<Region, Cpv> regions_of(const Subdivision& subdivision) {
+  std::map<Region, Cpv> regions;
+  for (const Cpv& cpv : subdivision.cpvs) regions[{subdivision.cells[cpv.cell].key, subdivision.intervals[cpv.interval]}] = cpv;
+  return regions;
+}
+
+std::vector<DirectionInterval> all_intervals(int level) {
+  std::vector<DirectionInterval> intervals;
+  for (int face = 0; face < kFaceCount; ++face)
+    for (int i = 0; i < 1 << level; ++i)
+      for (int j = 0; j < 1 << level; ++j) intervals.push_back({static_cast<Face>(face), level, i, j});
+  return intervals;
+}
+
+// Whether a view's frustum and a box meet, exactly: by the separating axis theorem over the frustum's planes, the box's axes and the
+// products of their edges. The five planes alone let boxes pass that no point of the frustum is in.
+bool sees_box(const View& view, const Camera& camera, const Box& box) {
+  if (!may_intersect(frustum_planes(view, camera), box)) return false;
+  const Mat3 world_from_eye = world_from_eye_rotation(view.direction);
+  std::vector<Vec3> edges, axes = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  for (const double x : {-1.0, 1.0})
+    for (const double y : {-1.0, 1.0}) edges.push_back(world_from_eye * Vec3(x * camera.tan_half_x(), y * camera.tan_half_y(), -1.0));
+  for (int axis = 0; axis < 3; ++axis)
+    for (const Vec3& edge : edges) axes.push_back(glm::cross(axes[static_cast<std::size_t>(axis)], edge));
+  for (const Vec3& axis : axes)
+    for (const double sign : {-1.0, 1.0}) {
+      const Vec3 normal = sign * axis;
+      const bool frustum_behind = std::all_of(edges.begin(), edges.end(), [&](const Vec3& edge) { return glm::dot(normal, edge) <= 0.0; });
+      if (frustum_behind && -box.support(-normal) > glm::dot(normal, view.position)) return false;
+    }
+  return true;
+}
+
+TEST(Subdivision, IsSlowOnlyWhenLookingAtTheForest) {
+  const World world = forest_world();
+  const TimeModel model = test::triangle_time_model();  // the forest takes 10.8 ms
+  const Subdivision found = world.subdivide_for(5.0, model);
+  ASSERT_FALSE(found.cpvs.empty());
+  const Vec3 to_forest = glm::normalize(Vec3(105, 3, 15) - Vec3(12, 1.7, 15));
+  bool ahead = false;
+  for (const Cpv& cpv : found.cpvs) {
+    const DirectionInterval& interval = found.intervals[cpv.interval];
+    ahead = ahead || interval == interval_of(to_forest, 3);
+    for (const Vec3& corner : interval.corner_directions())  // half image diagonal 30.4, interval 16, forest 11 degrees: 70 is far beyond
+      EXPECT_GT(glm::dot(corner, to_forest), std::cos(glm::radians(70.0)));
+    EXPECT_GT(cpv.predicted_ms, 5.0);
+    EXPECT_LE(cpv.predicted_ms, 10.8 + 0.002 + 1e-9);
+    for (const RegionTerm& term : found.terms_of(cpv))
+      EXPECT_NEAR(term.predicted_ms, world.scene.objects[term.object].name == "tree" ? 1.2 : 0.002, 1e-12);
+  }
+  EXPECT_TRUE(ahead);
+  EXPECT_NEAR(found.worst_predicted_ms, 10.802, 1e-9);
+}
+
+TEST(Subdivision, NothingIsSlowWithinAGenerousBudgetAndTheWorstRegionIsStillKnown) {
+  const Subdivision found = forest_world().subdivide_for(11.0, test::triangle_time_model());
+  EXPECT_TRUE(found.cpvs.empty());
+  EXPECT_TRUE(found.intervals.empty());
+  EXPECT_EQ(found.cells.size(), 1U);
+  EXPECT_NEAR(found.worst_predicted_ms, 10.802, 1e-9);
+  EXPECT_EQ(found.cells[0].worst_interval.face, Face::kPosX);
+}
+
+// The search against a plain evaluation of every leaf region from scratch.
+TEST(Subdivision, FindsExactlyTheRegionsOverBudget) {
+  const World world = small_town();
+  for (const TimeModel& model : {test::triangle_time_model(), test::full_time_model()}) {
+    const RegionEstimator estimator = world.estimator(model);
+    const CellBoxes cells(world.space);
+    const double worst = world.subdivide_for(1e9, model).worst_predicted_ms;
+    const Subdivision found = world.subdivide_for(0.7 * worst, model);
+    const auto regions = regions_of(found);
+    std::size_t hot = 0;
+    double highest = 0.0;
+    for (const Cell& cell : found.cells) {
+      const CellCosts costs = estimator.cell_costs(cells.chain(cell.key), world.all());
+      for (const DirectionInterval& interval : all_intervals(2)) {
+        const RegionBound bound = estimator.region_bound(costs, interval);
+        highest = std::max(highest, bound.predicted_ms);
+        const auto at = regions.find({cell.key, interval});
+        ASSERT_EQ(at != regions.end(), bound.predicted_ms > 0.7 * worst);
+        if (at == regions.end()) continue;
+        ++hot;
+        EXPECT_EQ(at->second.predicted_ms, bound.predicted_ms);
+        EXPECT_EQ(at->second.pixels_capped, bound.pixels_capped);
+        const auto terms = found.terms_of(at->second);
+        ASSERT_EQ(terms.size(), bound.terms.size());
+        double sum = at->second.constant_ms;
+        for (std::size_t i = 0; i < terms.size(); ++i) {
+          EXPECT_EQ(terms[i].object, bound.terms[i].object);
+          EXPECT_GT(terms[i].predicted_ms, 0.0);
+          sum += terms[i].predicted_ms;
+        }
+        EXPECT_EQ(sum, at->second.predicted_ms);
+      }
+    }
+    EXPECT_EQ(hot, found.cpvs.size());
+    EXPECT_GT(hot, 0U);
+    EXPECT_EQ(highest, found.worst_predicted_ms);
+  }
+}
+
+TEST(Subdivision, BoundsHoldForEverySampledView) {
+  std::printf("seed %llu\n", static_cast<unsigned long long>(kSeed));
+  const World world = small_town();
+  for (const TimeModel& model : {test::triangle_time_model(), test::full_time_model()}) {
+    const Subdivision found = world.subdivide_for(-1.0, model);  // every leaf region is a CPV
+    const auto regions = regions_of(found);
+    std::vector<CellKey> keys;
+    std::vector<Box> boxes;
+    for (const Cell& cell : found.cells) {
+      keys.push_back(cell.key);
+      boxes.push_back(cell.box);
+    }
+    const CellLocator locator(world.space.grid(), keys, boxes);
+    const FeatureTable features(world.scene, world.camera);
+    Rng rng(kSeed);
+    double tightest = 0.0;
+    for (int i = 0; i < 4000; ++i) {
+      View view{world.space.sample_position(rng), {rng.uniform(-1, 1), rng.uniform(-0.5, 0.5), rng.uniform(-1, 1)}};
+      view.direction = glm::normalize(view.direction);
+      const auto cell = locator.find(view.position);
+      ASSERT_TRUE(cell.has_value());
+      const Cpv& cpv = regions.at({keys[*cell], interval_of(view.direction, 2)});
+      Cost frame;
+      for (std::uint32_t object = 0; object < world.scene.objects.size(); ++object)
+        if (sees_box(view, world.camera, world.scene.objects[object].bounds))
+          frame += model.cost(features.estimate(object, PreparedView(view, world.camera)));
+      frame += model.cost(frame_features());
+      const double predicted_ms = model.predicted_ms(frame);
+      ASSERT_LE(predicted_ms, cpv.predicted_ms * (1 + 1e-12)) << "view " << i;
+      tightest = std::max(tightest, predicted_ms / cpv.predicted_ms);
+    }
+    EXPECT_GT(tightest, 0.5);  // the test could fail: some view comes near its bound
+  }
+}
+
+TEST(Subdivision, NoChildIsBoundedAboveItsParent) {
+  std::printf("seed %llu\n", static_cast<unsigned long long>(kSeed));
+  const World world = small_town(2);
+  const TimeModel model = test::full_time_model();
+  const RegionEstimator estimator = world.estimator(model);
+  const CellBoxes cells(world.space);
+  Rng rng(kSeed);
+  int compared = 0;
+  for (int i = 0; i < 600; ++i) {
+    CellKey key = cells.leaves()[rng.below(cells.leaves().size())];
+    key = key.child(static_cast<int>(rng.below(8)));
+    const CellKey child = key.child(static_cast<int>(rng.below(8)));
+    if (cells.cell_box(child).empty()) continue;
+    DirectionInterval interval{static_cast<Face>(rng.below(6)), 2, static_cast<int>(rng.below(4)), static_cast<int>(rng.below(4))};
+    const double parent_ms = estimator.region_bound(estimator.cell_costs(cells.chain(key), world.all()), interval.parent()).predicted_ms;
+    const double halved_cell_ms =
+        estimator.region_bound(estimator.cell_costs(cells.chain(child), world.all()), interval.parent()).predicted_ms;
+    const double child_ms = estimator.region_bound(estimator.cell_costs(cells.chain(child), world.all()), interval).predicted_ms;
+    EXPECT_LE(halved_cell_ms, parent_ms);
+    EXPECT_LE(child_ms, halved_cell_ms);
+    ++compared;
+  }
+  EXPECT_GT(compared, 50);
+}
+
+TEST(Subdivision, HotCellsAreHalvedAndColdOnesKept) {
+  const World world = small_town(2);
+  const TimeModel model = test::triangle_time_model();
+  const double worst = world.subdivide_for(1e9, model).worst_predicted_ms;
+  const Subdivision found = world.subdivide_for(0.8 * worst, model);
+  std::set<std::uint32_t> hot;
+  for (const Cpv& cpv : found.cpvs) hot.insert(cpv.cell);
+  std::set<int> levels;
+  for (std::uint32_t cell = 0; cell < found.cells.size(); ++cell) {
+    levels.insert(found.cells[cell].key.level);
+    EXPECT_TRUE(!hot.contains(cell) || found.cells[cell].key.level == world.space.finest_level);
+    EXPECT_EQ(found.cells[cell].box, world.space.cell_box(found.cells[cell].key));
+    EXPECT_TRUE(cell == 0 || found.cells[cell - 1].key < found.cells[cell].key);
+  }
+  EXPECT_GE(levels.size(), 2U);
+  EXPECT_TRUE(found.left_out.empty());
+}
+
+TEST(Subdivision, HalvingStopsAtTheLimitOnTermsAndSaysSo) {
+  const World world = small_town(2);
+  SubdivisionOptions options;
+  options.max_terms = 1;
+  const Subdivision found = world.subdivide_for(0.0, test::triangle_time_model(), {}, options);
+  for (const Cell& cell : found.cells) EXPECT_EQ(cell.key.level, world.space.leaf_level);
+  EXPECT_THAT(found.left_out, testing::ElementsAre(testing::HasSubstr("more than 1 object terms otherwise")));
+}
+
+TEST(Subdivision, TheSameForAnyNumberOfThreads) {
+  const World world = small_town(2);
+  const TimeModel model = test::full_time_model();
+  const double budget_ms = 0.6 * world.subdivide_for(1e9, model).worst_predicted_ms;
+  SubdivisionOptions options;
+  const Subdivision one = world.subdivide_for(budget_ms, model, {}, options);
+  options.threads = 3;
+  const Subdivision three = world.subdivide_for(budget_ms, model, {}, options);
+  ASSERT_EQ(one.cells.size(), three.cells.size());
+  ASSERT_EQ(one.cpvs.size(), three.cpvs.size());
+  EXPECT_EQ(one.intervals, three.intervals);
+  for (std::size_t i = 0; i < one.cpvs.size(); ++i) {
+    EXPECT_EQ(one.cpvs[i].cell, three.cpvs[i].cell);
+    EXPECT_EQ(one.cpvs[i].interval, three.cpvs[i].interval);
+    EXPECT_EQ(one.cpvs[i].predicted_ms, three.cpvs[i].predicted_ms);
+    EXPECT_EQ(one.cpvs[i].first_term, three.cpvs[i].first_term);
+  }
+  ASSERT_EQ(one.terms.size(), three.terms.size());
+  for (std::size_t i = 0; i < one.terms.size(); ++i) EXPECT_EQ(one.terms[i].object, three.terms[i].object);
+}
+
+TEST(Subdivision, VisibilityOnlyRemovesProblemViews) {
+  const World world = small_town(0);
+  const TimeModel model = test::triangle_time_model();
+  const double budget_ms = 0.5 * world.subdivide_for(1e9, model).worst_predicted_ms;
+  Visibility visibility{leaf_keys(world.space), {}};
+  Rng rng(kSeed);
+  for (std::size_t i = 0; i < visibility.cells.size(); ++i) {
+    visibility.sets.emplace_back();
+    for (std::uint32_t object = 0; object < world.scene.objects.size(); ++object)
+      if (rng.below(3) > 0) visibility.sets.back().push_back(object);
+  }
+  const Subdivision all = world.subdivide_for(budget_ms, model), seen = world.subdivide_for(budget_ms, model, visibility);
+  const auto all_regions = regions_of(all), seen_regions = regions_of(seen);
+  EXPECT_LT(seen_regions.size(), all_regions.size());
+  EXPECT_GT(seen_regions.size(), 0U);
+  for (const auto& [region, cpv] : seen_regions) {
+    ASSERT_TRUE(all_regions.contains(region));
+    EXPECT_LE(cpv.predicted_ms, all_regions.at(region).predicted_ms);
+    const auto& set = seen.visible_sets[static_cast<std::size_t>(seen.cells[cpv.cell].visible_set)];
+    for (const RegionTerm& term : seen.terms_of(cpv)) EXPECT_TRUE(std::binary_search(set.begin(), set.end(), term.object));
+  }
+}
+
+TEST(Subdivision, FinerCellsInheritTheVisibleSetOfTheirLeaf) {
+  const World world = small_town(1);
+  Visibility visibility{leaf_keys(world.space), {}};
+  for (std::uint32_t i = 0; i < visibility.cells.size(); ++i) visibility.sets.push_back({0, 1 + i % 5});
+  const Subdivision found = world.subdivide_for(0.0, test::triangle_time_model(), visibility);
+  for (const Cell& cell : found.cells) {
+    const CellKey leaf = cell.key.level == world.space.leaf_level ? cell.key : cell.key.parent();
+    EXPECT_EQ(visibility.cells[static_cast<std::size_t>(cell.visible_set)], leaf);
+  }
+}
+
+TEST(Subdivision, TheSmallerLinearFormIsChosen) {
+  const World world = small_town(0);
+  TimeModel model = test::full_time_model();
+  const auto count_capped = [&] {
+    const Subdivision found = world.subdivide_for(-1.0, model);
+    return std::count_if(found.cpvs.begin(), found.cpvs.end(), [](const Cpv& cpv) { return cpv.pixels_capped; });
+  };
+  model.pixel_cap_ms = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(count_capped(), 0);
+  const double uncapped_worst = world.subdivide_for(1e9, model).worst_predicted_ms;
+  model.pixel_cap_ms = 0.5;
+  EXPECT_GT(count_capped(), 0);
+  EXPECT_LT(world.subdivide_for(1e9, model).worst_predicted_ms, uncapped_worst);
+}
+
+TEST(Subdivision, StopsWhenAskedAndRefusesAForeignVisibility) {
+  const World world = small_town();
+  const std::atomic<bool> stop{true};
+  const auto word = [&](const Visibility& visibility, const WorkBudget& budget) {
+    try {
+      (void)subdivide(world.scene, world.rank, world.space, visibility, test::triangle_time_model(), world.camera, world.options, {},
+                      budget);
+    } catch (const Failure& failure) {
+      return failure.word();
+    }
+    return ErrorWord::kBadUsage;
+  };
+  EXPECT_EQ(word({}, WorkBudget(&stop)), ErrorWord::kCancelled);
+  EXPECT_EQ(word({{{0, {0, 0, 0}}}, {{0}}}, {}), ErrorWord::kInternal);
+}
+
+TEST(Subdivision, AViewSpaceOfOnePointWorks) {
+  World world = forest_world();
+  world.space = make_path_view_space({{12, 1.7, 15}}, 0.0, {});
+  const Subdivision found = world.subdivide_for(5.0, test::triangle_time_model());
+  EXPECT_EQ(found.cells.size(), 1U);
+  EXPECT_FALSE(found.cpvs.empty());
+}
+
+}  // namespace
+}  // namespace standin
