@@ -56,7 +56,10 @@ PlacementIndex::PlacementIndex(const Placement& placement) : placement_(&placeme
   interval_levels_.erase(std::unique(interval_levels_.begin(), interval_levels_.end()), interval_levels_.end());
   check_cpvs(placement);
   cpv_offset_.assign(placement.cells.size() + 1, 0);
-  for (const PlacementCpv& cpv : placement.cpvs) ++cpv_offset_[cpv.cell + 1];
+  for (const PlacementCpv& cpv : placement.cpvs) {
+    ++cpv_offset_[cpv.cell + 1];
+    cpv_interval_.push_back(cpv.interval);
+  }
   std::partial_sum(cpv_offset_.begin(), cpv_offset_.end(), cpv_offset_.begin());
 }
 
@@ -64,8 +67,8 @@ Lookup PlacementIndex::find(const Vec3& position, const Vec3& direction) const {
   Lookup lookup;
   lookup.cell = cells_.find(position);
   if (!lookup.cell) return lookup;
-  const auto first = placement_->cpvs.begin() + cpv_offset_[*lookup.cell];
-  const auto last = placement_->cpvs.begin() + cpv_offset_[*lookup.cell + 1];
+  const auto first = cpv_interval_.begin() + cpv_offset_[*lookup.cell];
+  const auto last = cpv_interval_.begin() + cpv_offset_[*lookup.cell + 1];
   if (first == last) return lookup;
   const auto& intervals = placement_->intervals;
   for (const int level : interval_levels_) {
@@ -73,9 +76,9 @@ Lookup PlacementIndex::find(const Vec3& position, const Vec3& direction) const {
     const auto interval = std::lower_bound(intervals.begin(), intervals.end(), wanted);
     if (interval == intervals.end() || *interval != wanted) continue;
     const auto id = static_cast<std::uint32_t>(interval - intervals.begin());
-    const auto cpv = std::lower_bound(first, last, id, [](const PlacementCpv& c, std::uint32_t i) { return c.interval < i; });
-    if (cpv == last || cpv->interval != id) continue;
-    lookup.cpv = static_cast<std::uint32_t>(cpv - placement_->cpvs.begin());
+    const auto cpv = std::lower_bound(first, last, id);
+    if (cpv == last || *cpv != id) continue;
+    lookup.cpv = static_cast<std::uint32_t>(cpv - cpv_interval_.begin());
     return lookup;
   }
   return lookup;

@@ -71,8 +71,9 @@ class PlacementIndex {
  private:
   const Placement* placement_;
   CellLocator cells_;
-  std::vector<int> interval_levels_;       // those in use, finest first
-  std::vector<std::uint32_t> cpv_offset_;  // per cell + 1
+  std::vector<int> interval_levels_;         // those in use, finest first
+  std::vector<std::uint32_t> cpv_offset_;    // per cell + 1
+  std::vector<std::uint32_t> cpv_interval_;  // per CPV, packed for the search
 };
 
 /// Objects to draw as originals and impostors to draw, for a lookup's answer. `object_count` of the scene.

@@ -1,10 +1,23 @@
 #include "placement/view_space/cell_locator.h"
 
 #include <algorithm>
+#include <bit>
+#include <limits>
 
 #include "render/base/error.h"
 
 namespace standin {
+namespace {
+
+constexpr std::uint32_t kFree = std::numeric_limits<std::uint32_t>::max();
+
+std::size_t hash_of(const CellKey& key) {
+  std::uint64_t hash = static_cast<std::uint64_t>(key.level);
+  for (const int index : key.index) hash = (hash ^ static_cast<std::uint64_t>(index)) * 0x9E3779B97F4A7C15ULL;
+  return static_cast<std::size_t>(hash ^ (hash >> 32));
+}
+
+}  // namespace
 
 CellLocator::CellLocator(const DyadicGrid& grid, std::vector<CellKey> keys, std::vector<Box> boxes)
     : grid_(grid), keys_(std::move(keys)), boxes_(std::move(boxes)) {
@@ -16,16 +29,28 @@ CellLocator::CellLocator(const DyadicGrid& grid, std::vector<CellKey> keys, std:
   if (keys_.empty()) return;
   coarsest_level_ = keys_.front().level;
   finest_level_ = keys_.back().level;
+  slots_.assign(std::bit_ceil(2 * keys_.size()), kFree);
+  for (std::uint32_t id = 0; id < keys_.size(); ++id) {
+    std::size_t slot = hash_of(keys_[id]);
+    while (slots_[slot & (slots_.size() - 1)] != kFree) ++slot;
+    slots_[slot & (slots_.size() - 1)] = id;
+  }
+}
+
+std::optional<std::uint32_t> CellLocator::cell_at(const CellKey& key) const {
+  for (std::size_t slot = hash_of(key);; ++slot) {
+    const std::uint32_t id = slots_[slot & (slots_.size() - 1)];
+    if (id == kFree) return std::nullopt;
+    if (keys_[id] == key) return id;
+  }
 }
 
 std::optional<std::uint32_t> CellLocator::cell_above(const std::array<int, 3>& finest_index, const Vec3& position) const {
   for (int level = finest_level_; level >= coarsest_level_; --level) {
     const int shift = finest_level_ - level;
     const CellKey key{level, {finest_index[0] >> shift, finest_index[1] >> shift, finest_index[2] >> shift}};
-    const auto found = std::lower_bound(keys_.begin(), keys_.end(), key);
-    if (found == keys_.end() || *found != key) continue;
-    const auto id = static_cast<std::uint32_t>(found - keys_.begin());
-    if (boxes_[id].contains(position)) return id;
+    const auto id = cell_at(key);
+    if (id && boxes_[*id].contains(position)) return id;
   }
   return std::nullopt;
 }

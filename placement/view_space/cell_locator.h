@@ -22,11 +22,13 @@ class CellLocator {
   [[nodiscard]] std::optional<std::uint32_t> find(const Vec3& position) const;
 
  private:
+  [[nodiscard]] std::optional<std::uint32_t> cell_at(const CellKey& key) const;
   [[nodiscard]] std::optional<std::uint32_t> cell_above(const std::array<int, 3>& finest_index, const Vec3& position) const;
 
   DyadicGrid grid_;
   std::vector<CellKey> keys_;
   std::vector<Box> boxes_;
+  std::vector<std::uint32_t> slots_;  // open addressing by key, at most half full; kFree or a cell id
   int coarsest_level_ = 0;
   int finest_level_ = 0;
 };

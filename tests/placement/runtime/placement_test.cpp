@@ -40,7 +40,7 @@ struct RandomPlacement {
     for (const CellKey& leaf : cells.leaves()) add_cells(cells, leaf, rng);
     std::sort(placement.cells.begin(), placement.cells.end(), [](const PlacementCell& a, const PlacementCell& b) { return a.key < b.key; });
     std::set<DirectionInterval> intervals;
-    for (int i = 0; i < 60; ++i) add_interval(intervals, rng);
+    for (int i = 0; i < 200; ++i) add_interval(intervals, rng);
     placement.intervals.assign(intervals.begin(), intervals.end());
     for (std::uint32_t cell = 0; cell < placement.cells.size(); ++cell)
       for (std::uint32_t interval = 0; interval < placement.intervals.size(); ++interval)
@@ -102,10 +102,16 @@ std::optional<std::uint32_t> scan_cpvs(const Placement& placement, std::uint32_t
   return std::nullopt;
 }
 
-Vec3 random_position(Rng& rng) {
+// In or about a random cell; two thirds of the coordinates on its borders.
+Vec3 random_position(const Placement& placement, Rng& rng) {
+  const Box& box = placement.cells[rng.below(placement.cells.size())].box;
   Vec3 position(0.0);
-  for (int axis = 0; axis < 3; ++axis)  // half of the coordinates on a border of the grid
-    position[axis] = rng.below(2) == 0 ? 0.5 * static_cast<double>(rng.below(24)) - 0.5 : rng.uniform(-0.5, 10.5);
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::uint64_t kind = rng.below(12);
+    position[axis] = kind < 4   ? box.min[axis]
+                     : kind < 8 ? box.max[axis]
+                                : rng.uniform(box.min[axis], kind < 11 ? box.max[axis] : box.max[axis] + 1.0);
+  }
   return position;
 }
 
@@ -125,7 +131,7 @@ TEST(PlacementIndex, AgreesWithALinearScanOnBordersToo) {
     const RandomPlacement world(rng);
     const PlacementIndex index(world.placement);
     for (int i = 0; i < 2000; ++i) {
-      const Vec3 position = random_position(rng), direction = random_direction(rng);
+      const Vec3 position = random_position(world.placement, rng), direction = random_direction(rng);
       const Lookup found = index.find(position, direction);
       const auto cell = scan_cells(world, position);
       ASSERT_EQ(found.cell, cell);
@@ -134,8 +140,8 @@ TEST(PlacementIndex, AgreesWithALinearScanOnBordersToo) {
       in_cpvs += found.cpv ? 1 : 0;
     }
   }
-  EXPECT_GT(in_cells, 2000);
-  EXPECT_GT(in_cpvs, 300);
+  EXPECT_GT(in_cells, 12'000);
+  EXPECT_GT(in_cpvs, 1000);
 }
 
 TEST(PlacementIndex, FindAllocatesNothing) {
@@ -144,7 +150,7 @@ TEST(PlacementIndex, FindAllocatesNothing) {
   const PlacementIndex index(world.placement);
   const Vec3 inside = world.placement.cells[0].box.centre();
   const std::uint64_t before = test::allocation_count();
-  for (int i = 0; i < 100; ++i) (void)index.find(i % 2 == 0 ? inside : random_position(rng), random_direction(rng));
+  for (int i = 0; i < 100; ++i) (void)index.find(i % 2 == 0 ? inside : random_position(world.placement, rng), random_direction(rng));
   EXPECT_EQ(test::allocation_count() - before, 0U);
 }
 
