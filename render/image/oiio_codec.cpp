@@ -68,29 +68,33 @@ std::string read(const std::string& file, Texture& image) {
   return input ? read_pixels(*input, image) : "is no image that OpenImageIO reads: " + OIIO::geterror();
 }
 
-// OpenImageIO picks its reader by file name; in memory only the first bytes tell.
-std::string name_for(std::string_view bytes) {
+// OpenImageIO picks its reader by file name; in memory only the first bytes tell the format.
+std::string format_of(std::string_view bytes) {
   using Magic = std::pair<std::string_view, const char*>;
-  static constexpr std::array<Magic, 8> kMagics{{{"\x89PNG", "x.png"},
-                                                 {"\xFF\xD8\xFF", "x.jpg"},
-                                                 {"RIFF", "x.webp"},
-                                                 {"BM", "x.bmp"},
-                                                 {"DDS ", "x.dds"},
-                                                 {"GIF8", "x.gif"},
-                                                 {"II*", "x.tif"},
-                                                 {"\x01\xDA", "x.sgi"}}};
-  for (const auto& [magic, name] : kMagics) {
-    if (bytes.starts_with(magic)) return name;
+  static constexpr std::array<Magic, 8> kMagics{{{"\x89PNG", "png"},
+                                                 {"\xFF\xD8\xFF", "jpeg"},
+                                                 {"RIFF", "webp"},
+                                                 {"BM", "bmp"},
+                                                 {"DDS ", "dds"},
+                                                 {"GIF8", "gif"},
+                                                 {"II*", "tiff"},
+                                                 {"\x01\xDA", "sgi"}}};
+  for (const auto& [magic, format] : kMagics) {
+    if (bytes.starts_with(magic)) return format;
   }
-  return "x.tga";  // has no magic
+  return "targa";  // has no magic
 }
 
 std::string decode(const std::uint8_t* bytes, std::size_t size, Texture& image) {
-  const ImageSpec config = reading_config();
   OIIO::Filesystem::IOMemReader memory(bytes, size);
-  const std::string name = name_for({reinterpret_cast<const char*>(bytes), size});
-  const auto input = ImageInput::open(name, &config, &memory);
-  return input ? read_pixels(*input, image) : "is no image that OpenImageIO reads from memory: " + OIIO::geterror();
+  const std::string format = format_of({reinterpret_cast<const char*>(bytes), size});
+  const auto input = ImageInput::create(format);
+  if (!input) return "is no image that OpenImageIO reads: " + OIIO::geterror();
+  if (!input->supports("ioproxy")) return "is of the format " + format + ", which is only read from files";
+  input->set_ioproxy(&memory);
+  ImageSpec ignored;
+  if (!input->open("memory", ignored, reading_config())) return "is no image that OpenImageIO reads: " + input->geterror();
+  return read_pixels(*input, image);
 }
 
 std::string encode_png(const Texture& image, std::string& png) {

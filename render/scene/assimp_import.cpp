@@ -4,6 +4,7 @@
 // name beside the scene and in LoadOptions::texture_folders: authors' absolute paths are common and their folders are not here.
 
 #include <assimp/DefaultIOSystem.h>
+#include <assimp/MemoryIOWrapper.h>
 #include <assimp/commonMetaData.h>
 #include <assimp/material.h>
 #include <assimp/postprocess.h>
@@ -14,9 +15,11 @@
 #include <cmath>
 #include <map>
 #include <optional>
+#include <tuple>
 
 #include "render/base/error.h"
 #include "render/image/image_io.h"
+#include "render/scene/ac3d.h"
 #include "render/scene/import.h"
 
 namespace standin {
@@ -35,7 +38,7 @@ class ConfinedFiles : public Assimp::DefaultIOSystem {
   bool Exists(const char* file) const override { return inside(file) && DefaultIOSystem::Exists(file); }
   Assimp::IOStream* Open(const char* file, const char* mode) override {
     if (std::string_view(mode).find_first_of("wa+") != std::string_view::npos) return nullptr;
-    if (inside(file)) return DefaultIOSystem::Open(file, mode);
+    if (inside(file)) return fs::path(file).extension() == ".acc" ? open_ac3d(file) : DefaultIOSystem::Open(file, mode);
     if (forbidden_.empty()) forbidden_ = file;
     return nullptr;
   }
@@ -43,6 +46,14 @@ class ConfinedFiles : public Assimp::DefaultIOSystem {
   [[nodiscard]] const std::string& forbidden() const { return forbidden_; }
 
  private:
+  static Assimp::IOStream* open_ac3d(const char* file) {
+    const std::vector<std::uint8_t> bytes = read_bytes(file);
+    const std::string text = with_base_textures_only({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+    auto* copy = new std::uint8_t[text.size()];
+    std::copy(text.begin(), text.end(), copy);
+    return new Assimp::MemoryIOStream(copy, text.size(), true);  // owns the copy; Close() deletes the stream
+  }
+
   [[nodiscard]] bool inside(const char* file) const {
     const fs::path relative = fs::weakly_canonical(fs::absolute(file)).lexically_relative(folder_.path());
     return !relative.empty() && *relative.begin() != "..";
@@ -193,7 +204,7 @@ class AssimpReader {
   }
 
   std::uint32_t material_of(unsigned int index) {
-    const auto [known, fresh] = materials_.try_emplace(index, static_cast<std::uint32_t>(scene_.materials.size()));
+    const auto [known, fresh] = materials_.try_emplace(index, 0);
     if (!fresh) return known->second;
     const aiMaterial& from = *from_->mMaterials[index];
     Material material;
@@ -207,7 +218,17 @@ class AssimpReader {
     int shading = aiShadingMode_Gouraud;
     material.unlit = from.Get(AI_MATKEY_SHADING_MODEL, shading) == AI_SUCCESS && shading == aiShadingMode_NoShading;
     read_texture(from, material);
-    scene_.materials.push_back(std::move(material));
+    known->second = index_of(std::move(material));
+    return known->second;
+  }
+
+  // AC3D and others write a material per surface; each one kept would be a state switch.
+  std::uint32_t index_of(Material material) {
+    const auto look = [](const Material& m) {
+      return std::tuple(m.base_colour.r, m.base_colour.g, m.base_colour.b, m.texture, m.alpha_mode, m.unlit);
+    };
+    const auto [known, fresh] = looks_.try_emplace(look(material), static_cast<std::uint32_t>(scene_.materials.size()));
+    if (fresh) scene_.materials.push_back(std::move(material));
     return known->second;
   }
 
@@ -215,7 +236,8 @@ class AssimpReader {
     aiString name;
     const bool found =
         from.GetTexture(aiTextureType_BASE_COLOR, 0, &name) == AI_SUCCESS || from.GetTexture(aiTextureType_DIFFUSE, 0, &name) == AI_SUCCESS;
-    if (!found || name.length == 0) return;
+    // "ERROR" is what Assimp makes of AC3D's unquoted names (TORCS: no texture).
+    if (!found || name.length == 0 || std::string_view(name.C_Str()) == "ERROR") return;
     material.texture = texture_of(name.C_Str());
     if (material.texture < 0) return;
     if (glm::vec3(material.base_colour) == glm::vec3(0.0F)) {
@@ -295,6 +317,7 @@ class AssimpReader {
   std::map<std::vector<unsigned int>, PartRange> part_ranges_;
   std::map<unsigned int, std::optional<std::uint32_t>> meshes_;
   std::map<unsigned int, std::uint32_t> materials_;
+  std::map<std::tuple<float, float, float, std::int32_t, AlphaMode, bool>, std::uint32_t> looks_;
   std::map<std::string, std::int32_t> textures_;
   std::vector<bool> holed_;  // per Scene::textures
 };

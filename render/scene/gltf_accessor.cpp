@@ -104,7 +104,7 @@ GltfFile::Elements GltfFile::located(const Json& where, const Elements& shape, b
   return result;
 }
 
-GltfFile::Elements GltfFile::elements(std::uint64_t accessor) {
+GltfFile::Elements GltfFile::elements(std::uint64_t accessor, std::size_t components) {
   Elements shape;
   shape.place = "accessors[" + std::to_string(accessor) + "]";
   const Json& json = item("accessors", accessor, shape.place);
@@ -113,34 +113,33 @@ GltfFile::Elements GltfFile::elements(std::uint64_t accessor) {
   shape.components = components_of(text(json, "type"), shape.place);
   const Json* normalised = member(json, "normalized");
   shape.normalised = normalised != nullptr && normalised->is_boolean() && normalised->get<bool>();
-  if (member(json, "bufferView") != nullptr) return located(json, shape, false);
   (void)size_of_component(shape.component_type, shape.place);
-  if (shape.count > kMaxZeros)
+  if (shape.components != components) {
+    throw Failure(ErrorWord::kFileBroken, shape.place + " has " + std::to_string(shape.components) + " components where " +
+                                              std::to_string(components) + " are needed");
+  }
+  if (member(json, "bufferView") != nullptr) return located(json, shape, false);
+  if (shape.count > kMaxZeros) {
     throw Failure(ErrorWord::kFileBroken, shape.place + " has " + std::to_string(shape.count) + " elements and no bytes");
+  }
   return shape;
 }
 
-std::vector<float> GltfFile::floats(std::uint64_t accessor, std::size_t components) {
-  const Elements from = elements(accessor);
-  if (from.components != components) {
-    throw Failure(ErrorWord::kFileBroken, from.place + " has " + std::to_string(from.components) + " components where " +
-                                              std::to_string(components) + " are needed");
-  }
-  std::vector<float> values(from.count * components, 0.0F);
+// `values` come as zeros.
+void GltfFile::read_floats(std::uint64_t accessor, const Elements& from, std::span<float> values) {
   const std::size_t size = size_of_component(from.component_type, from.place);
-  if (from.component_type == kFloat && from.stride == size * components && !from.bytes.empty()) {
-    std::memcpy(values.data(), from.bytes.data(), values.size() * sizeof(float));
+  if (from.component_type == kFloat && from.stride == size * from.components && !from.bytes.empty()) {
+    std::memcpy(values.data(), from.bytes.data(), values.size_bytes());
   } else if (!from.bytes.empty()) {
     for (std::size_t i = 0; i < values.size(); ++i) {
-      const std::size_t offset = i / components * from.stride + i % components * size;
+      const std::size_t offset = i / from.components * from.stride + i % from.components * size;
       values[i] = component(from.bytes.data() + offset, from.component_type, from.normalised);
     }
   }
   substitute_sparse(item("accessors", accessor, from.place), from, values);
-  return values;
 }
 
-void GltfFile::substitute_sparse(const Json& accessor, const Elements& shape, std::vector<float>& values) {
+void GltfFile::substitute_sparse(const Json& accessor, const Elements& shape, std::span<float> values) {
   const Json* sparse = member(accessor, "sparse");
   if (sparse == nullptr) return;
   const std::string place = shape.place + ".sparse";
@@ -169,9 +168,8 @@ void GltfFile::substitute_sparse(const Json& accessor, const Elements& shape, st
 }
 
 std::vector<std::uint32_t> GltfFile::indices(std::uint64_t accessor) {
-  const Elements from = elements(accessor);
+  const Elements from = elements(accessor, 1);
   check_index_type(from.component_type, from.place);
-  if (from.components != 1) throw Failure(ErrorWord::kFileBroken, from.place + " holds indices of several components");
   std::vector<std::uint32_t> values(from.count, 0);
   if (from.bytes.empty()) return values;
   for (std::size_t i = 0; i < values.size(); ++i) values[i] = index_at(from.bytes.data() + i * from.stride, from.component_type);

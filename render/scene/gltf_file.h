@@ -44,7 +44,13 @@ class GltfFile {
 
   [[nodiscard]] std::span<const std::uint8_t> view(std::uint64_t index);
   /// Elements of `components` numbers each, normalised integers scaled, sparse substitutions applied.
-  [[nodiscard]] std::vector<float> floats(std::uint64_t accessor, std::size_t components);
+  template <typename Vector>
+  [[nodiscard]] std::vector<Vector> vectors(std::uint64_t accessor) {
+    const Elements from = elements(accessor, static_cast<std::size_t>(Vector::length()));
+    std::vector<Vector> values(from.count);
+    read_floats(accessor, from, {reinterpret_cast<float*>(values.data()), from.count * from.components});
+    return values;
+  }
   [[nodiscard]] std::vector<std::uint32_t> indices(std::uint64_t accessor);
 
  private:
@@ -64,9 +70,10 @@ class GltfFile {
   [[nodiscard]] std::span<const std::uint8_t> buffer(std::uint64_t index);
   [[nodiscard]] std::span<const std::uint8_t> slice(const Json& view, const std::string& place);
   [[nodiscard]] std::vector<std::uint8_t> decompressed(const Json& extension, const std::string& place);
-  [[nodiscard]] Elements elements(std::uint64_t accessor);
+  [[nodiscard]] Elements elements(std::uint64_t accessor, std::size_t components);
   [[nodiscard]] Elements located(const Json& where, const Elements& shape, bool packed);
-  void substitute_sparse(const Json& accessor, const Elements& shape, std::vector<float>& values);
+  void read_floats(std::uint64_t accessor, const Elements& from, std::span<float> values);
+  void substitute_sparse(const Json& accessor, const Elements& shape, std::span<float> values);
 
   SceneFolder folder_;
   Json json_;

@@ -1,6 +1,5 @@
 // glTF 2.0: the node tree to objects, primitives to meshes.
 
-#include <cstring>
 #include <glm/gtc/quaternion.hpp>
 #include <glm/gtc/type_ptr.hpp>
 #include <set>
@@ -174,27 +173,23 @@ class GltfReader {
   std::vector<Mat4> node_from_instances(const Json& instancing, const std::string& place) {
     const Json* attributes = member(instancing, "attributes");
     if (attributes == nullptr) throw Failure(ErrorWord::kFileBroken, place + " has instances without attributes");
-    const auto values = [&](const char* name, std::size_t components) {
-      const auto accessor = whole_number(*attributes, name, place);
-      return accessor ? file_.floats(*accessor, components) : std::vector<float>();
-    };
-    const std::vector<float> t = values("TRANSLATION", 3);
-    const std::vector<float> r = values("ROTATION", 4);
-    const std::vector<float> s = values("SCALE", 3);
-    const std::size_t count = std::max({t.size() / 3, r.size() / 4, s.size() / 3});
-    const auto complete = [&](const std::vector<float>& list, std::size_t components) {
-      return list.empty() || list.size() == count * components;
-    };
-    if (!complete(t, 3) || !complete(r, 4) || !complete(s, 3)) {
+    const auto accessor = [&](const char* name) { return whole_number(*attributes, name, place); };
+    std::vector<glm::vec3> translations;
+    std::vector<glm::vec4> rotations;
+    std::vector<glm::vec3> scales;
+    if (const auto t = accessor("TRANSLATION")) translations = file_.vectors<glm::vec3>(*t);
+    if (const auto r = accessor("ROTATION")) rotations = file_.vectors<glm::vec4>(*r);
+    if (const auto s = accessor("SCALE")) scales = file_.vectors<glm::vec3>(*s);
+    const std::size_t count = std::max({translations.size(), rotations.size(), scales.size()});
+    const auto complete = [&](std::size_t size) { return size == 0 || size == count; };
+    if (!complete(translations.size()) || !complete(rotations.size()) || !complete(scales.size())) {
       throw Failure(ErrorWord::kFileBroken, place + " has instance attributes of different lengths");
     }
     std::vector<Mat4> result;
     for (std::size_t i = 0; i < count; ++i) {
-      const Vec3 translation = t.empty() ? Vec3(0.0) : Vec3(t[3 * i], t[3 * i + 1], t[3 * i + 2]);
-      const glm::dquat rotation =
-          r.empty() ? unit_quaternion(0, 0, 0, 1) : unit_quaternion(r[4 * i], r[4 * i + 1], r[4 * i + 2], r[4 * i + 3]);
-      const Vec3 scale = s.empty() ? Vec3(1.0) : Vec3(s[3 * i], s[3 * i + 1], s[3 * i + 2]);
-      result.push_back(placed(translation, rotation, scale));
+      const glm::vec4 r = rotations.empty() ? glm::vec4(0, 0, 0, 1) : rotations[i];
+      result.push_back(placed(translations.empty() ? Vec3(0.0) : Vec3(translations[i]), unit_quaternion(r.x, r.y, r.z, r.w),
+                              scales.empty() ? Vec3(1.0) : Vec3(scales[i])));
     }
     return result;
   }
@@ -257,16 +252,10 @@ class GltfReader {
 
   Mesh read_mesh(const Json& primitive, const Json& attributes, Mode mode, const std::string& uv_name, const std::string& place) {
     Mesh mesh;
-    const auto read_into = [&](auto& target, const std::string& attribute, std::size_t components) {
-      const auto accessor = whole_number(attributes, attribute.c_str(), place);
-      if (!accessor) return;
-      const std::vector<float> values = file_.floats(*accessor, components);
-      target.resize(values.size() / components);
-      if (!values.empty()) std::memcpy(target.data(), values.data(), values.size() * sizeof(float));
-    };
-    read_into(mesh.positions, "POSITION", 3);
-    read_into(mesh.normals, "NORMAL", 3);
-    read_into(mesh.uvs, uv_name, 2);
+    const auto accessor = [&](const std::string& attribute) { return whole_number(attributes, attribute.c_str(), place); };
+    if (const auto positions = accessor("POSITION")) mesh.positions = file_.vectors<glm::vec3>(*positions);
+    if (const auto normals = accessor("NORMAL")) mesh.normals = file_.vectors<glm::vec3>(*normals);
+    if (const auto uvs = accessor(uv_name)) mesh.uvs = file_.vectors<glm::vec2>(*uvs);
     if (const auto indices = whole_number(primitive, "indices", place)) {
       mesh.indices = file_.indices(*indices);
     } else {

@@ -40,8 +40,8 @@ void read_by_assimp(Import& import, const std::filesystem::path& file);
 
 /// Moves meshes that lie far from their own origin there, and their objects the other way: float keeps its precision near zero.
 void recentre(Scene& scene);
-/// Splits what LoadOptions calls too heavy or too long (thesis 1.6).
-void split_objects(Scene& scene, const LoadOptions& options);
+/// Splits what LoadOptions calls too heavy or too long (thesis 1.6); true if anything was. Leaves derived values to be updated.
+bool split_objects(Scene& scene, const LoadOptions& options);
 /// Removes meshes, materials and textures that no object shows.
 void prune(Scene& scene);
 

@@ -97,9 +97,9 @@ Scene load_scene(const fs::path& file, const LoadOptions& options) {
   drop_undrawable(scene);
   check_not_empty(scene, file);
   check_size(scene, options);
-  split_objects(scene, options);
+  const bool split = split_objects(scene, options);
   prune(scene);
-  update_derived(scene);
+  if (split) update_derived(scene);
   scene.name = file.filename().string();
   scene.sha256 = digest.get();
   return std::move(import.scene);

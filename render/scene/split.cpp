@@ -192,8 +192,10 @@ class Splitter {
 
 }  // namespace
 
-void split_objects(Scene& scene, const LoadOptions& options) {
+bool split_objects(Scene& scene, const LoadOptions& options) {
+  const std::size_t before = scene.objects.size();
   Splitter(scene, {options.split_triangles, options.split_extent * scene.bounds.diagonal()}).run();
+  return scene.objects.size() > before;
 }
 
 }  // namespace standin
