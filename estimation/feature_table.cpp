@@ -50,6 +50,12 @@ struct PatchSum {
   }
 };
 
+PatchSum patch_sum(const std::vector<SurfacePatch>& patches, const Mat3& world_area_from_mesh) {
+  PatchSum sum;
+  for (const SurfacePatch& patch : patches) sum.add(world_area_from_mesh * patch.vector_area_m2);
+  return sum;
+}
+
 struct MeshInEye {
   MeshInEye(const Mat3& eye_from_mesh_, const Vec3& origin_, double winding_)
       : eye_from_mesh(eye_from_mesh_), eye_area_from_mesh(winding_ * cofactor(eye_from_mesh_)), origin(origin_) {}
@@ -70,9 +76,10 @@ struct PartOnScreen {
   double covering_triangles = 0.0;
 };
 
-PartOnScreen part_on_screen(const SurfaceSamples& samples, const MeshInEye& mesh, const Projection& projection, bool double_sided) {
+PartOnScreen part_on_screen(const SurfaceSamples& samples, bool near, const MeshInEye& mesh, const Projection& projection,
+                            bool double_sided) {
   PartOnScreen seen;
-  for (const SurfacePatch& patch : samples.patches) {
+  for (const SurfacePatch& patch : near ? samples.near_patches : samples.patches) {
     const Vec3 point = mesh.eye_from_mesh * patch.point + mesh.origin;
     if (projection.sees(point)) seen.pixels += mesh.pixels(patch, point, projection, double_sided);
   }
@@ -118,11 +125,12 @@ FeatureTable::ObjectShape FeatureTable::shape_of(const Object& object) {
     shape.counts[Term::kDraws] += 1.0;
     shape.counts[Term::kTextureSwitches] += kind == PixelKind::kPlain ? 0.0 : 1.0;
     shape.counts[Term::kTriangles] += static_cast<double>(scene_->meshes[part.mesh].triangle_count());
-    PatchSum sum;
-    for (const SurfacePatch& patch : samples.patches) sum.add(world_area_from_mesh * patch.vector_area_m2);
+    const PatchSum far = patch_sum(samples.patches, world_area_from_mesh);
+    const PatchSum near = patch_sum(samples.near_patches, world_area_from_mesh);
     FacingArea& area = shape.area[static_cast<std::size_t>(kind)];
-    area.total_m2 += sum.area_m2;
-    area.facing_m2 += sum.facing_m2(scene_->materials[part.material].double_sided);
+    const bool double_sided = scene_->materials[part.material].double_sided;
+    area.total_m2 += std::max(far.area_m2, near.area_m2);
+    area.facing_m2 += std::max(far.facing_m2(double_sided), near.facing_m2(double_sided));
     for (const SurfacePatch& triangle : samples.triangles)
       covering.push_back({glm::length(world_area_from_mesh * triangle.vector_area_m2), samples.triangles_per_sample});
   }
@@ -158,10 +166,12 @@ Features FeatureTable::estimate(std::uint32_t object, const PreparedView& view) 
   const Mat3 world_from_mesh(drawn.world_from_object);
   const MeshInEye mesh{view.eye_from_world * world_from_mesh, view.eye_from_world * (Vec3(drawn.world_from_object[3]) - view.position),
                        glm::determinant(world_from_mesh) < 0.0 ? -1.0 : 1.0};
+  const bool near = distance(view.position, drawn.bounds) < shapes_[object].radius_m;
   Features features = shapes_[object].counts;
   for (std::uint32_t p = drawn.first_part; p < drawn.first_part + drawn.part_count; ++p) {
     const Part& part = scene_->parts[p];
-    const PartOnScreen seen = part_on_screen(samples_[part.mesh], mesh, Projection(camera_), scene_->materials[part.material].double_sided);
+    const PartOnScreen seen =
+        part_on_screen(samples_[part.mesh], near, mesh, Projection(camera_), scene_->materials[part.material].double_sided);
     features[kPixelTerm[static_cast<std::size_t>(pixel_kind(*scene_, part))]] += seen.pixels;
     features[Term::kOnScreenTriangles] += seen.triangles;
     features[Term::kCoveringTriangles] += seen.covering_triangles;

@@ -29,7 +29,7 @@ class FeatureTable {
  public:
   FeatureTable(const Scene& scene, const Camera& camera);
 
-  /// Estimate for one view; all zero when the object's bounds miss the frustum. About a microsecond a part.
+  /// Estimate for one view; all zero when the object's bounds miss the frustum. About a microsecond a part, 15 for a part within reach.
   [[nodiscard]] Features estimate(std::uint32_t object, const PreparedView& view) const;
   /// Upper bound over all views at least `nearest_m` from the object's bounds; well below a microsecond.
   [[nodiscard]] Features bound(std::uint32_t object, double nearest_m) const;

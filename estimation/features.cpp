@@ -12,7 +12,7 @@ std::string_view term_name(Term term) {
 }
 
 bool is_pixel_term(Term term) {
-  return term == Term::kPlainPixels || term == Term::kTexturedPixels || term == Term::kMaskedPixels || term == Term::kImpostorPixels;
+  return term == Term::kPlainPixels || term == Term::kTexturedPixels || term == Term::kMaskedPixels;
 }
 
 Features frame_features() {

@@ -2,7 +2,7 @@
 //
 // Features are additive over what is drawn. For a single view they are estimates; for a region they are upper bounds over all its views
 // that come no nearer than `nearest_m` to the object's bounds, and monotone: falling in `nearest_m`. Pixel terms are counted before the
-// depth test; the model caps their sum (time_model.h).
+// depth test; the model caps the sum of the originals' (time_model.h). Asked for more than once, take a FeatureTable (feature_table.h).
 #pragma once
 
 #include <array>
@@ -18,7 +18,7 @@ namespace standin {
 enum class Term : std::size_t {
   kFrame,              // 1 per frame
   kDraws,              // draw calls
-  kTextureSwitches,    // real changes of the bound texture
+  kTextureSwitches,    // changes of the bound texture, at most: draws sorted by texture save some
   kTriangles,          // submitted triangles
   kOnScreenTriangles,  // of these, inside the frustum (the rest is clipped early)
   kCoveringTriangles,  // sum over triangles of min(1, pixels per triangle)
@@ -30,6 +30,7 @@ enum class Term : std::size_t {
 };
 inline constexpr std::size_t kTermCount = static_cast<std::size_t>(Term::kCount);
 [[nodiscard]] std::string_view term_name(Term term);  // "draws" ...
+/// Pixels of originals, whose cost saturates as near ones hide far ones. An impostor's do not: its quads are masked, in no depth order.
 [[nodiscard]] bool is_pixel_term(Term term);
 
 struct Features {
@@ -51,13 +52,13 @@ struct Features {
 struct ImpostorCost {
   double quads = 0.0;
   double texels = 0.0;           // of all quads
-  double texel_angle_rad = 0.0;  // greatest angle of a texel seen from the nearest point of the view cell
+  double texel_angle_rad = 0.0;  // of a texel seen from the nearest point of the view cell (root of the solid angle), the greatest
 };
 [[nodiscard]] ImpostorCost impostor_cost(const Impostor& impostor);
 /// Upper bound over all views in the impostor's view cell at distance >= nearest_m from the represented objects. One draw; no switch
 /// (charged once per atlas page and frame).
 [[nodiscard]] Features impostor_features_bound(const ImpostorCost& cost, const Camera& camera);
-/// Estimate for one view, pixels scaled to its distance from the objects' bounds, zero outside the frustum.
+/// Estimate for one view in the view cell, summed over the quads; all zero when the objects' bounds miss the frustum.
 [[nodiscard]] Features impostor_features(const Impostor& impostor, const Box& objects_bounds, const View& view, const Camera& camera);
 /// Features of an empty frame.
 [[nodiscard]] Features frame_features();

@@ -58,7 +58,7 @@ Coefficients column_units(const std::vector<TimedFrame>& frames, const std::vect
 
 /// One least-squares problem over scaled coefficients `u` and the cap, both changed in place.
 std::string solve(const std::vector<TimedFrame>& frames, const std::vector<std::size_t>& rows, const TermSet& terms,
-                  const Coefficients& unit, ceres::LossFunction* loss, Coefficients& u, double& pixel_cap_ms) {
+                  const Coefficients& unit, double tolerance, ceres::LossFunction* loss, Coefficients& u, double& pixel_cap_ms) {
   ceres::Problem::Options ownership;
   ownership.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
   ceres::Problem problem(ownership);
@@ -79,7 +79,7 @@ std::string solve(const std::vector<TimedFrame>& frames, const std::vector<std::
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::DENSE_QR;
   options.max_num_iterations = 200;
-  options.function_tolerance = options.gradient_tolerance = options.parameter_tolerance = 1e-14;
+  options.function_tolerance = options.gradient_tolerance = options.parameter_tolerance = tolerance;
   options.logging_type = ceres::SILENT;
   options.num_threads = 1;
   ceres::Solver::Summary summary;
@@ -100,8 +100,8 @@ CostFit fit_costs(const std::vector<TimedFrame>& frames, const std::vector<std::
   // The first loss is convex where no cap bends the model, so the second, which all but ignores outliers, starts in the right basin.
   ceres::SoftLOneLoss convex(0.2);
   ceres::CauchyLoss redescending(0.1);
-  solve(frames, rows, terms, unit, &convex, u, fit.pixel_cap_ms);
-  fit.stopped = solve(frames, rows, terms, unit, &redescending, u, fit.pixel_cap_ms);
+  solve(frames, rows, terms, unit, 1e-4, &convex, u, fit.pixel_cap_ms);
+  fit.stopped = solve(frames, rows, terms, unit, 1e-14, &redescending, u, fit.pixel_cap_ms);
   for (std::size_t i = 0; i < kTermCount; ++i) fit.milliseconds_per_unit[i] = u[i] * unit[i];
   if (fit.pixel_cap_ms == kNeverReached_ms) fit.pixel_cap_ms = std::numeric_limits<double>::infinity();
   return fit;

@@ -61,6 +61,7 @@ SurfaceSamples sample_surface(const Mesh& mesh, std::uint32_t count) {
   const std::size_t triangles = mesh.triangle_count();
   if (triangles == 0) return samples;
   samples.patches = patches_by_area(mesh, count);
+  samples.near_patches = patches_by_area(mesh, kNearFactor * count);
   const std::size_t taken = std::min<std::size_t>(triangles, count);
   samples.triangles_per_sample = static_cast<double>(triangles) / static_cast<double>(taken);
   for (std::size_t i = 0; i < taken; ++i) {

@@ -19,12 +19,14 @@ struct SurfacePatch {
 };
 
 struct SurfaceSamples {
-  std::vector<SurfacePatch> patches;    // together the whole area
-  std::vector<SurfacePatch> triangles;  // whole single triangles, centroids
-  double triangles_per_sample = 0.0;    // how many triangles each of `triangles` stands for
+  std::vector<SurfacePatch> patches;       // together the whole area
+  std::vector<SurfacePatch> near_patches;  // the same area in more patches, for an eye so near that some fill the image
+  std::vector<SurfacePatch> triangles;     // whole single triangles, centroids
+  double triangles_per_sample = 0.0;       // how many triangles each of `triangles` stands for
 };
 
-/// At most `count` >= 1 of each; every triangle once where there are no more than that.
+inline constexpr std::uint32_t kNearFactor = 16;
+/// At most `count` >= 1 patches and triangles, kNearFactor times as many near patches; every triangle where there are no more than `count`.
 [[nodiscard]] SurfaceSamples sample_surface(const Mesh& mesh, std::uint32_t count);
 
 }  // namespace standin

@@ -1,7 +1,7 @@
 // The rendering-time model of one target machine (thesis 5.2.1, 5.8.1): milliseconds as a non-negative linear function of Features, with an
 // upper bound of stated coverage.
 //
-// predicted = sum over non-pixel terms + min(sum over pixel terms, pixel_cap_ms): opaque objects are drawn front to back, so a frame's
+// predicted = sum over non-pixel terms + min(sum over pixel terms, pixel_cap_ms): originals are drawn front to back, so a frame's
 // pixel work saturates (a region's bound must choose one of the two linear forms beforehand: Cost keeps them apart). The bound is a factor
 // times the prediction, conformal (split by scene) and made monotone; inverted once, it leaves placement a single predicted-time budget.
 #pragma once
@@ -18,8 +18,8 @@ namespace standin {
 
 /// Predicted milliseconds of something drawn, its two parts kept apart; adds up.
 struct Cost {
-  double fixed_ms = 0.0;  // draws, switches, triangles
-  double pixel_ms = 0.0;
+  double fixed_ms = 0.0;  // draws, switches, triangles, impostors' pixels
+  double pixel_ms = 0.0;  // what the cap limits
   Cost& operator+=(const Cost& other) {
     fixed_ms += other.fixed_ms;
     pixel_ms += other.pixel_ms;

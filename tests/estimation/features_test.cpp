@@ -103,6 +103,17 @@ TEST(Estimate, HalvesWhenHalfIsOffScreen) {
               0.05 * std::pow(kCamera.focal_px() * 8.0 / 50.0, 2));
 }
 
+// A wall of two triangles, 40 m wide, from 2 m away: the image is a small part of it, and full.
+TEST(Estimate, OfANearWallFillsTheScreen) {
+  Scene scene;
+  for (const double angle : {0.0, 0.3, 0.7})
+    add_object(scene, grid_mesh(20.0F, 1), moved(0, 0, -2) * glm::rotate(Mat4(1.0), angle, Vec3(0, 1, 0)), false);
+  for (std::uint32_t id = 0; id < 3; ++id) {
+    const double pixels = object_features(scene, id, kAhead, kCamera)[Term::kPlainPixels];
+    EXPECT_NEAR(pixels, 512.0 * 512.0, 0.45 * 512.0 * 512.0) << id;
+  }
+}
+
 TEST(Estimate, IsZeroOutsideTheFrustum) {
   Scene scene;
   add_object(scene, grid_mesh(1.0F, 2), moved(0, 0, 20), true);

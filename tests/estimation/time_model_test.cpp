@@ -33,6 +33,15 @@ TEST(TimeModel, KeepsPixelWorkApart) {
   EXPECT_DOUBLE_EQ(model.predicted_ms({1.5, 200.0}), 6.5);
 }
 
+// A view full of impostors must not count as free because the originals' pixels have a cap.
+TEST(TimeModel, DoesNotCapImpostorPixels) {
+  TimeModel model = model_with({{kInfinity, 1.0}});
+  model.milliseconds_per_unit[static_cast<std::size_t>(Term::kImpostorPixels)] = 0.25;
+  Features features;
+  features[Term::kImpostorPixels] = 100.0;
+  EXPECT_DOUBLE_EQ(model.predicted_ms(model.cost(features)), 25.0);
+}
+
 TEST(TimeModel, BoundStaysLevelUntilALesserFactorHasCaughtUp) {
   const TimeModel model = model_with({{10.0, 2.0}, {kInfinity, 1.25}});
   EXPECT_DOUBLE_EQ(model.bound_ms(0.0), 0.0);
