@@ -3,7 +3,9 @@
 // The blind product of nodes, apex angles, directions and distances has 2.4e8 members; we start from the (node, cell) pairs that can gain
 // something and ask which shafts enclose the cell. Each shaft is then tightened: axis, aperture and near plane shrink to the cells served
 // (2x less memory for nothing, simulation.md). Candidates with the same node and cells are duplicates; hopeless ones (too many layers, no
-// gain) are dropped in O(1) from the closed-form layer count.
+// gain) are dropped in O(1) from the closed-form layer count. Every (node, cell) that can gain anything also gets the shaft tight around
+// that cell alone, so that the selection can reach what reachable_times() promises. A node whose visible objects all lie in one child gets
+// none of its own: the child's is the same impostor.
 #pragma once
 
 #include <cstdint>

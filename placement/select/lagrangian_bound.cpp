@@ -11,6 +11,8 @@ namespace {
 // Below this the price D -> lambda / D could overflow; dropping a constraint only lowers the bound.
 constexpr double kLeastDeficit = 1e-200;
 
+constexpr int kPatience = 10;  // steps
+
 /// Constraint q = (CPV, stage) is kept in units of its own deficit: coverage a / D in [0, 1] of a demand of 1, at a price lambda D in
 /// bytes. Deficits of 1e-12 and 1e12 then weigh the same.
 class Dual {
@@ -34,30 +36,40 @@ class Dual {
     }
   }
 
-  /// Deflected subgradient from the present prices; returns the best value seen.
+  /// Deflected subgradient from the present prices; returns the best value seen. Where the relaxation has a gap, steps aimed at a known
+  /// solution overshoot for ever: after a while without gain they are halved and start again from the best prices.
   double improve(double upper_bound_bytes, int iterations, const WorkBudget& budget) {
     std::vector<double> shortage(price_.size());
     std::vector<double> direction(price_.size(), 0.0);
-    double best = evaluate(shortage);
+    Best best{evaluate(shortage), price_, shortage};
     double step_scale = 1.0;
+    int without_gain = 0;
     for (int i = 0; i < iterations; ++i) {
       budget.check();
-      double squared = 0.0;
-      for (std::size_t q = 0; q < direction.size(); ++q) {
-        direction[q] = 0.7 * shortage[q] + 0.3 * direction[q];
-        if (price_[q] == 0.0) direction[q] = std::max(direction[q], 0.0);  // a price of 0 cannot fall: no part of the step
-        squared += direction[q] * direction[q];
-      }
+      const double squared = deflect(direction, shortage);
       if (squared <= 0.0) break;  // optimal prices
-      const double step = step_scale * std::max(upper_bound_bytes - best, 1e-3 * upper_bound_bytes) / squared;
+      const double step = step_scale * std::max(upper_bound_bytes - best.value, 1e-3 * upper_bound_bytes) / squared;
       for (std::size_t q = 0; q < direction.size(); ++q) price_[q] = std::max(0.0, price_[q] + step * direction[q]);
-      step_scale *= 0.99;
-      best = std::max(best, evaluate(shortage));
+      if (const double value = evaluate(shortage); value > best.value) {
+        best = {value, price_, shortage};
+        without_gain = 0;
+      } else if (++without_gain == kPatience) {
+        price_ = best.price;
+        shortage = best.shortage;
+        std::fill(direction.begin(), direction.end(), 0.0);
+        step_scale *= 0.5;
+        without_gain = 0;
+      }
     }
-    return best;
+    return best.value;
   }
 
  private:
+  struct Best {
+    double value = 0.0;
+    std::vector<double> price;
+    std::vector<double> shortage;
+  };
   struct Constraint {
     double deficit = 0.0;         // 0: dropped
     double bytes_per_gain = 0.0;  // price / deficit
@@ -102,6 +114,17 @@ class Dual {
       cover_with(c, shortage);
     }
     return value - relative_error_ * magnitude;
+  }
+
+  /// Turns `direction` towards the shortage and returns its squared length. A price of 0 cannot fall: no part of the step.
+  double deflect(std::vector<double>& direction, const std::vector<double>& shortage) const {
+    double squared = 0.0;
+    for (std::size_t q = 0; q < direction.size(); ++q) {
+      direction[q] = 0.7 * shortage[q] + 0.3 * direction[q];
+      if (price_[q] == 0.0) direction[q] = std::max(direction[q], 0.0);
+      squared += direction[q] * direction[q];
+    }
+    return squared;
   }
 
   [[nodiscard]] double payment(std::uint32_t candidate) const {

@@ -5,7 +5,8 @@
 //     L(lambda) = sum_q D_q lambda_q + sum_i min(0, m_i - sum_q a_iq lambda_q)  <=  bytes of any feasible set,
 // so the search for good multipliers needs no proof of its own. It starts by dual ascent (raise one multiplier until a candidate is paid
 // for in full) and goes on by a deflected subgradient (Camerini, Fratta, Maffioli 1975; step rule of Held, Wolfe, Crowder 1974). Every step
-// is one pass over the gains: the bound improves with time, and any prefix of it is valid.
+// is one pass over the gains: the bound improves with time, and any prefix of it is valid. It is weak where a cluster has many overlapping
+// shafts: the relaxation may count several impostors of one cluster in the same CPV.
 #pragma once
 
 #include <vector>
