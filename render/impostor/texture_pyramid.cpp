@@ -105,25 +105,35 @@ bool TexturePyramid::passes(const Vec2& uv) const {
   return weight_of(0, texel_at(levels_[0], x, y)) > 0.0F;
 }
 
-bool TexturePyramid::any_in(int level, int x0, int x1, int y0, int y1) const {
+/// Whether a texel within the range passes below texel (x, y) of a level, which meets the range.
+bool TexturePyramid::any_below(int level, int x, int y, const Range& range) const {
   const Level& texels = levels_[static_cast<std::size_t>(level)];
-  for (int y = y0 >> level; y <= y1 >> level; ++y)
-    for (int x = x0 >> level; x <= x1 >> level; ++x)
-      if (weight_of(level, texel_at(texels, x, y)) > 0.0F) return true;
+  if (weight_of(level, texel_at(texels, x, y)) <= 0.0F) return false;
+  const int x0 = x << level, y0 = y << level, x1 = x0 + (1 << level) - 1, y1 = y0 + (1 << level) - 1;
+  if (range.x0 <= x0 && x1 <= range.x1 && range.y0 <= y0 && y1 <= range.y1) return true;
+  const int finer = level - 1;  // level 0 ended above: its texels meet the range only as a whole
+  for (int j = std::max(2 * y, range.y0 >> finer); j <= std::min(2 * y + 1, range.y1 >> finer); ++j)
+    for (int i = std::max(2 * x, range.x0 >> finer); i <= std::min(2 * x + 1, range.x1 >> finer); ++i)
+      if (any_below(finer, i, j, range)) return true;
+  return false;
+}
+
+bool TexturePyramid::any_in(const Range& range) const {
+  int level = 0;
+  while (level < coarsest_level() && ((range.x1 - range.x0) >> level > 1 || (range.y1 - range.y0) >> level > 1)) ++level;
+  for (int y = range.y0 >> level; y <= range.y1 >> level; ++y)
+    for (int x = range.x0 >> level; x <= range.x1 >> level; ++x)
+      if (any_below(level, x, y, range)) return true;
   return false;
 }
 
 bool TexturePyramid::any_passes(const Vec2& uv_min, const Vec2& uv_max) const {
-  constexpr int kMostTexels = 4;  // a side: coarser than this would reach too far beyond the box
   const Runs columns = wrapped_runs(uv_min.x, uv_max.x, texture_.width), rows = wrapped_runs(uv_min.y, uv_max.y, texture_.height);
   for (int i = 0; i < 2; ++i)
-    for (int j = 0; j < 2; ++j) {
-      const int x0 = columns.first[i], x1 = columns.last[i], y0 = rows.first[j], y1 = rows.last[j];
-      if (x1 < x0 || y1 < y0) continue;
-      int level = 0;
-      while (level < coarsest_level() && std::max(x1 - x0, y1 - y0) >> level >= kMostTexels) ++level;
-      if (any_in(level, x0, x1, y0, y1)) return true;
-    }
+    for (int j = 0; j < 2; ++j)
+      if (columns.first[i] <= columns.last[i] && rows.first[j] <= rows.last[j] &&
+          any_in({columns.first[i], columns.last[i], rows.first[j], rows.last[j]}))
+        return true;
   return false;
 }
 

@@ -27,7 +27,7 @@ class TexturePyramid {
   [[nodiscard]] Sample sample(const Vec2& uv, double level) const;
   /// Whether the texel at `uv` passes the mask.
   [[nodiscard]] bool passes(const Vec2& uv) const;
-  /// Whether any texel that meets the box passes the mask; may say yes for one just outside.
+  /// Whether any texel that meets the closed box passes the mask; a millionth of a texel beyond it counts too.
   [[nodiscard]] bool any_passes(const Vec2& uv_min, const Vec2& uv_max) const;
 
   [[nodiscard]] int width() const { return texture_.width; }
@@ -53,7 +53,12 @@ class TexturePyramid {
   }
   [[nodiscard]] WeightedColour bilinear(int level, const Vec2& wrapped_uv) const;
   void add_half_of(int level);
-  [[nodiscard]] bool any_in(int level, int x0, int x1, int y0, int y1) const;
+  /// Texels [x0, x1] x [y0, y1] of the texture itself.
+  struct Range {
+    int x0 = 0, x1 = -1, y0 = 0, y1 = -1;
+  };
+  [[nodiscard]] bool any_in(const Range& range) const;
+  [[nodiscard]] bool any_below(int level, int x, int y, const Range& range) const;
 
   const Texture& texture_;
   int least_alpha_ = 0;
