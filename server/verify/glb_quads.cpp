@@ -1,129 +1,109 @@
 #include "server/verify/glb_quads.h"
 
-#include <tiny_gltf.h>
-
-#include <cmath>
-#include <cstring>
-#include <glm/gtc/matrix_transform.hpp>
-#include <glm/gtc/quaternion.hpp>
-#include <glm/gtc/type_ptr.hpp>
-#include <limits>
-
 #include "render/base/error.h"
+#include "render/image/image_io.h"
+#include "render/scene/gltf_file.h"
 
 namespace standin {
 namespace {
+
+constexpr int kDeepestNode = 64;  // nodes form trees; the limit only stops a file that says otherwise
+constexpr std::uint64_t kTriangles = 4;
 
 [[noreturn]] void fail(const std::string& what) {
   throw Failure(ErrorWord::kFileBroken, "impostor GLB: " + what);
 }
 
-template <class Container>
-const auto& at(const Container& items, int index, const char* what) {
-  if (index < 0 || static_cast<std::size_t>(index) >= items.size())
-    fail(std::string(what) + " " + std::to_string(index) + " does not exist");
-  return items[static_cast<std::size_t>(index)];
+std::vector<std::uint64_t> index_list(const Json& json, const char* key, const std::string& place) {
+  std::vector<std::uint64_t> indices;
+  const Json* list = member(json, key);
+  if (list == nullptr) return indices;
+  for (const Json& value : *list) {
+    if (!value.is_number_unsigned()) fail(place + "." + key + " holds something else than indices");
+    indices.push_back(value.get<std::uint64_t>());
+  }
+  return indices;
 }
 
-// Typed elements of an accessor, checked against the buffer once.
-class Elements {
- public:
-  Elements(const tinygltf::Model& model, int index, int type) : accessor_(at(model.accessors, index, "accessor")) {
-    const auto& view = at(model.bufferViews, accessor_.bufferView, "buffer view");
-    const auto& bytes = at(model.buffers, view.buffer, "buffer").data;
-    const int stride = accessor_.ByteStride(view);
-    component_bytes_ =
-        static_cast<std::size_t>(std::max(0, tinygltf::GetComponentSizeInBytes(static_cast<std::uint32_t>(accessor_.componentType))));
-    const auto size = component_bytes_ * static_cast<std::size_t>(tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(type)));
-    if (accessor_.type != type || stride <= 0 || accessor_.count == 0)
-      fail("accessor " + std::to_string(index) + " is not of the type it is used as");
-    stride_ = static_cast<std::size_t>(stride);
-    const std::size_t begin = view.byteOffset + accessor_.byteOffset;
-    if (begin + stride_ * (accessor_.count - 1) + size > bytes.size()) fail("accessor " + std::to_string(index) + " leaves its buffer");
-    first_ = bytes.data() + begin;
-  }
-  [[nodiscard]] std::size_t count() const { return accessor_.count; }
-  [[nodiscard]] double real(std::size_t element, std::size_t component) const {
-    if (accessor_.componentType != TINYGLTF_COMPONENT_TYPE_FLOAT) fail("vertex data must be float");
-    float value = 0.0F;
-    std::memcpy(&value, first_ + element * stride_ + component * component_bytes_, sizeof(value));
-    return value;
-  }
-  [[nodiscard]] std::size_t index(std::size_t element) const {
-    std::uint32_t value = 0;  // glTF is little-endian, as are the machines this runs on
-    std::memcpy(&value, first_ + element * stride_, std::min(component_bytes_, sizeof(value)));
-    return value;
-  }
+const Json& object_at(const Json& json, const char* key, const std::string& place) {
+  const Json* found = member(json, key);
+  if (found == nullptr || !found->is_object()) fail(place + " has no " + key);
+  return *found;
+}
 
- private:
-  const tinygltf::Accessor& accessor_;
-  const unsigned char* first_ = nullptr;
-  std::size_t stride_ = 0;
-  std::size_t component_bytes_ = 0;
-};
+/// Embedded, either way that glTF allows; a page that lies elsewhere would not ship.
+Texture image_of(GltfFile& file, std::uint64_t image, const std::string& place) {
+  const Json& json = file.item("images", image, place);
+  const std::string name = "impostor GLB, images[" + std::to_string(image) + "]";
+  const std::string uri = text(json, "uri");
+  if (is_data_uri(uri)) return decode_image(decode_data_uri(uri, name), name);
+  return decode_image(file.view(required_number(json, "bufferView", name)), name);
+}
 
-GlbPage page_of(const tinygltf::Model& model, const tinygltf::Material& material) {
-  if (material.alphaMode != "MASK") fail("material \"" + material.name + "\" has alphaMode " + material.alphaMode + ", not MASK");
-  const auto& texture = at(model.textures, material.pbrMetallicRoughness.baseColorTexture.index, "texture");
-  const auto& image = at(model.images, texture.source, "image");
-  if (image.component != 4 || image.bits != 8 || image.width <= 0 || image.height <= 0) fail("image \"" + image.name + "\" is not RGBA8");
-  GlbPage page{image.width, image.height, {}, image.image};
-  for (std::size_t i = 3; i < image.image.size(); i += 4) page.opaque.push_back(image.image[i] / 255.0 >= material.alphaCutoff);
-  if (page.opaque.size() != static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height))
-    fail("image \"" + image.name + "\" is incomplete");
+GlbPage page_of(GltfFile& file, std::uint64_t material) {
+  const std::string place = "materials[" + std::to_string(material) + "]";
+  const Json& json = file.item("materials", material, place);
+  if (text(json, "alphaMode") != "MASK") fail(place + " has alphaMode \"" + text(json, "alphaMode") + "\", not MASK");
+  const Json& surface = object_at(json, "pbrMetallicRoughness", place);
+  const auto texture = required_number(object_at(surface, "baseColorTexture", place), "index", place);
+  const auto image = required_number(file.item("textures", texture, place), "source", place);
+  Texture decoded = image_of(file, image, place);
+  GlbPage page{decoded.width, decoded.height, {}, std::move(decoded.rgba)};
+  const double cutoff = real_number(json, "alphaCutoff", 0.5, place);
+  for (std::size_t i = 3; i < page.rgba.size(); i += 4) page.opaque.push_back(page.rgba[i] / 255.0 >= cutoff);
   return page;
 }
 
-Mat4 local_transform(const tinygltf::Node& node) {
-  if (node.matrix.size() == 16) return glm::make_mat4(node.matrix.data());
-  Mat4 result(1.0);
-  if (node.translation.size() == 3) result = glm::translate(result, glm::make_vec3(node.translation.data()));
-  if (node.rotation.size() == 4)
-    result *= glm::mat4_cast(glm::dquat(node.rotation[3], node.rotation[0], node.rotation[1], node.rotation[2]));
-  if (node.scale.size() == 3) result = glm::scale(result, glm::make_vec3(node.scale.data()));
-  return result;
-}
-
-int attribute(const tinygltf::Primitive& primitive, const char* name) {
-  const auto found = primitive.attributes.find(name);
-  if (found == primitive.attributes.end()) fail(std::string("a primitive has no ") + name);
-  return found->second;
-}
-
-void add_primitive(const tinygltf::Model& model, const tinygltf::Primitive& primitive, const Mat3& world_from_node, const GlbQuads& quads,
-                   GlbImpostor& impostor) {
-  const Elements positions(model, attribute(primitive, "POSITION"), TINYGLTF_TYPE_VEC3);
-  const Elements uvs(model, attribute(primitive, "TEXCOORD_0"), TINYGLTF_TYPE_VEC2);
-  const Elements indices(model, primitive.indices, TINYGLTF_TYPE_SCALAR);
-  const GlbPage& page = at(quads.pages, primitive.material, "material");
-  if ((primitive.mode != TINYGLTF_MODE_TRIANGLES && primitive.mode != -1) || indices.count() % 3 != 0)
-    fail("a primitive is not a list of triangles");
-  for (std::size_t first = 0; first < indices.count(); first += 3) {
+void add_primitive(GltfFile& file, const Json& primitive, const GlbQuads& quads, const std::string& place, GlbImpostor& impostor) {
+  const Json& attributes = object_at(primitive, "attributes", place);
+  const auto positions = file.vectors<glm::vec3>(required_number(attributes, "POSITION", place));
+  const auto uvs = file.vectors<glm::vec2>(required_number(attributes, "TEXCOORD_0", place));
+  const auto indices = file.indices(required_number(primitive, "indices", place));
+  const auto material = required_number(primitive, "material", place);
+  if (material >= quads.pages.size()) fail(place + " names material " + std::to_string(material) + ", which does not exist");
+  if (whole_number(primitive, "mode", place).value_or(kTriangles) != kTriangles || indices.size() % 3 != 0)
+    fail(place + " is not a list of triangles");
+  const Vec2 size(quads.pages[material].width, quads.pages[material].height);
+  for (std::size_t first = 0; first < indices.size(); first += 3) {
     GlbTriangle triangle;
-    triangle.page = static_cast<std::uint32_t>(primitive.material);
+    triangle.page = static_cast<std::uint32_t>(material);
     for (std::size_t k = 0; k < 3; ++k) {
-      const std::size_t vertex = indices.index(first + k);
-      if (vertex >= positions.count() || vertex >= uvs.count()) fail("index " + std::to_string(vertex) + " names no vertex");
-      triangle.offsets[k] = world_from_node * Vec3(positions.real(vertex, 0), positions.real(vertex, 1), positions.real(vertex, 2));
-      triangle.texels[k] = Vec2(uvs.real(vertex, 0) * page.width, uvs.real(vertex, 1) * page.height);
+      const std::uint32_t vertex = indices[first + k];
+      if (vertex >= positions.size() || vertex >= uvs.size()) fail(place + ": index " + std::to_string(vertex) + " names no vertex");
+      triangle.offsets[k] = Vec3(positions[vertex]);
+      triangle.texels[k] = Vec2(uvs[vertex]) * size;
     }
     impostor.triangles.push_back(triangle);
   }
 }
 
-// glTF nodes form trees; the depth limit only stops a file that says otherwise.
-void add_nodes(const tinygltf::Model& model, int index, const Mat4& world_from_parent, int depth, GlbQuads& quads) {
-  if (depth > 64) fail("nodes are nested without end");
-  const auto& node = at(model.nodes, index, "node");
-  const Mat4 world_from_node = world_from_parent * local_transform(node);
-  if (node.name.starts_with("imp_")) {
-    GlbImpostor impostor{node.name, Vec3(world_from_node[3]), {}};
-    if (node.mesh >= 0)
-      for (const auto& primitive : at(model.meshes, node.mesh, "mesh").primitives)
-        add_primitive(model, primitive, Mat3(world_from_node), quads, impostor);
+Vec3 translation_of(const Json& node, const std::string& place) {
+  for (const char* other : {"matrix", "rotation", "scale"})
+    if (member(node, other) != nullptr) fail(place + " has a " + other + "; impostors are only moved");
+  const auto t = real_numbers(node, "translation", 3, place).value_or(std::vector<double>{0.0, 0.0, 0.0});
+  return {t[0], t[1], t[2]};
+}
+
+void add_meshes(GltfFile& file, const Json& node, const std::string& place, const GlbQuads& quads, GlbImpostor& impostor) {
+  const auto mesh = whole_number(node, "mesh", place);
+  if (!mesh) return;
+  const std::string mesh_place = "meshes[" + std::to_string(*mesh) + "]";
+  const Json* primitives = member(file.item("meshes", *mesh, place), "primitives");
+  if (primitives == nullptr || !primitives->is_array()) fail(mesh_place + " has no primitives");
+  for (const Json& primitive : *primitives) add_primitive(file, primitive, quads, mesh_place, impostor);
+}
+
+void add_nodes(GltfFile& file, std::uint64_t index, const Vec3& parent_origin, int depth, GlbQuads& quads) {
+  if (depth > kDeepestNode) fail("nodes are nested without end");
+  const std::string place = "nodes[" + std::to_string(index) + "]";
+  const Json& node = file.item("nodes", index, place);
+  const Vec3 origin = parent_origin + translation_of(node, place);
+  if (text(node, "name").starts_with("imp_")) {
+    GlbImpostor impostor{text(node, "name"), origin, {}};
+    add_meshes(file, node, place, quads, impostor);
     quads.impostors.push_back(std::move(impostor));
   }
-  for (const int child : node.children) add_nodes(model, child, world_from_node, depth + 1, quads);
+  for (const auto child : index_list(node, "children", place)) add_nodes(file, child, origin, depth + 1, quads);
 }
 
 }  // namespace
@@ -135,18 +115,13 @@ const GlbImpostor& GlbQuads::impostor(std::string_view node) const {
 }
 
 GlbQuads read_glb_quads(const std::string& bytes) {
-  if (bytes.size() > std::numeric_limits<unsigned int>::max()) fail(std::to_string(bytes.size()) + " bytes are more than a GLB can hold");
-  tinygltf::Model model;
-  std::string error;
-  std::string warning;
-  tinygltf::TinyGLTF reader;
-  if (!reader.LoadBinaryFromMemory(&model, &error, &warning, reinterpret_cast<const unsigned char*>(bytes.data()),
-                                   static_cast<unsigned int>(bytes.size())))
-    fail(error.empty() ? "unreadable" : error);
+  GltfFile file({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()}, SceneFolder("impostors.glb"));
   GlbQuads quads;
-  for (const auto& material : model.materials) quads.pages.push_back(page_of(model, material));
-  for (const auto& scene : model.scenes)
-    for (const int root : scene.nodes) add_nodes(model, root, Mat4(1.0), 0, quads);
+  for (std::uint64_t material = 0; material < file.count("materials"); ++material) quads.pages.push_back(page_of(file, material));
+  for (std::uint64_t scene = 0; scene < file.count("scenes"); ++scene) {
+    const std::string place = "scenes[" + std::to_string(scene) + "]";
+    for (const auto root : index_list(file.item("scenes", scene, place), "nodes", place)) add_nodes(file, root, Vec3(0.0), 0, quads);
+  }
   return quads;
 }
 

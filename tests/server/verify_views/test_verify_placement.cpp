@@ -1,0 +1,160 @@
+// The whole of verification on two walls, with a timer that counts triangles instead of milliseconds.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "render/image/image_io.h"
+#include "server/verify/frame_pictures.h"
+#include "server/verify/verify.h"
+#include "tests/server/verify_views/small_placement.h"
+
+namespace standin {
+namespace {
+
+using testing::Contains;
+using testing::HasSubstr;
+
+/// 1 ms a triangle, in the model and on the timer.
+Target one_ms_per_triangle() {
+  Target target;
+  target.model.milliseconds_per_unit[static_cast<std::size_t>(Term::kTriangles)] = 1.0;
+  target.model.pixel_cap_ms = 1e9;
+  return target;
+}
+
+TimingSession count_triangles(Context&) {
+  return {nullptr, make_fake_frame_timer([](const FrameCounts& counts) { return static_cast<double>(counts.triangles); })};
+}
+
+class VerifyPlacement : public testing::Test {
+ protected:
+  VerifyResult verify(double budget_ms, const VerifyOptions& options, const StartTiming& timing = count_triangles) {
+    const VerifyInput input{world.scene,  target,    world.placement, world.view_space,
+                            world.camera, world.glb, budget_ms,       world.camera.pixel_angle_rad()};
+    return verify_placement(input, *context, timing, options, {});
+  }
+
+  test::SmallPlacement world;
+  Target target = one_ms_per_triangle();
+  std::unique_ptr<Context> context = make_context(DeviceKind::kOsMesa, 64, 64);
+};
+
+TEST_F(VerifyPlacement, TimesWhatTheLookUpSays) {
+  const auto quad_triangles = 2.0 * world.placement.impostors[0].quads;
+  ASSERT_LT(quad_triangles, test::kWallTriangles);
+  const VerifyResult result = verify(100.0, {.views = 64});
+  int with_impostor = 0;
+  for (const auto& view : result.views) {
+    ASSERT_TRUE(view.measured_before_ms && view.measured_after_ms);
+    const bool sees_wall = *view.measured_before_ms >= test::kWallTriangles;
+    if (view.cpv && sees_wall) {
+      EXPECT_EQ(*view.measured_after_ms, *view.measured_before_ms - test::kWallTriangles + quad_triangles);
+      ++with_impostor;
+    } else if (!view.cpv) {
+      EXPECT_EQ(*view.measured_after_ms, *view.measured_before_ms);
+      EXPECT_EQ(view.mean_error, 0.0);
+    }
+  }
+  EXPECT_GT(with_impostor, 20);
+}
+
+TEST_F(VerifyPlacement, EstimatesAgreeWithCountsWhereAllIsInView) {
+  for (const auto& view : verify(100.0, {.views = 64}).views) {
+    EXPECT_EQ(view.estimated_before_ms, *view.measured_before_ms);
+    EXPECT_EQ(view.estimated_after_ms, *view.measured_after_ms);
+  }
+}
+
+TEST_F(VerifyPlacement, CountsViewsOverTheBudget) {
+  const VerifyResult generous = verify(1000.0, {.views = 32});
+  EXPECT_EQ(generous.over_budget_measured, 0U);
+  EXPECT_EQ(generous.over_budget_estimated, 0U);
+  EXPECT_LT(generous.worst_over_budget, 1.0);
+  const VerifyResult tight = verify(1.0, {.views = 32});
+  std::uint32_t over = 0;
+  double worst = 0.0;
+  for (const auto& view : tight.views) {
+    over += *view.measured_after_ms > 1.0 ? 1U : 0U;
+    worst = std::max(worst, *view.measured_after_ms);
+  }
+  EXPECT_GT(over, 0U);
+  EXPECT_EQ(tight.over_budget_measured, over);
+  EXPECT_EQ(tight.over_budget_estimated, over);
+  EXPECT_EQ(tight.worst_over_budget, worst);
+}
+
+TEST_F(VerifyPlacement, TheSlowestEstimatesAreTimedBefore) {
+  VerifyOptions options{.views = 64, .measured_before_share = 0.25};
+  const VerifyResult result = verify(100.0, options);
+  double least_timed = 1e9, most_untimed = 0.0;
+  int timed = 0;
+  for (const auto& view : result.views) {
+    EXPECT_TRUE(view.measured_after_ms.has_value());
+    timed += view.measured_before_ms ? 1 : 0;
+    (view.measured_before_ms ? least_timed = std::min(least_timed, view.estimated_before_ms)
+                             : most_untimed = std::max(most_untimed, view.estimated_before_ms));
+  }
+  EXPECT_EQ(timed, 16);
+  EXPECT_GE(least_timed, most_untimed);
+  EXPECT_THAT(result.left_out, Contains(HasSubstr("frame times before")));
+}
+
+TEST_F(VerifyPlacement, WithoutTheTargetsDeviceNothingIsTimedAndItSaysSo) {
+  const VerifyResult result = verify(100.0, {.views = 16}, {});
+  for (const auto& view : result.views) EXPECT_FALSE(view.measured_before_ms || view.measured_after_ms);
+  EXPECT_EQ(result.over_budget_measured, 0U);
+  EXPECT_THAT(result.left_out, Contains(HasSubstr("not measured")));
+  EXPECT_FALSE(result.pictures.empty());
+}
+
+TEST_F(VerifyPlacement, RaysFindThePromiseKept) {
+  const VerifyResult result = verify(100.0, {.views = 1, .judged_views = 8});
+  EXPECT_EQ(result.judged_views, 8U);
+  EXPECT_EQ(result.gap_pixels, 0U);
+  EXPECT_LE(result.max_parallax_ratio, 1.0);
+}
+
+TEST_F(VerifyPlacement, RaysFindAHole) {
+  ImpostorSet holed = world.impostors;
+  for (std::size_t i = 3; i < holed.pages[0].rgba.size(); i += 4) holed.pages[0].rgba[i] = 0;
+  world.glb = encode_impostor_glb(holed);
+  const VerifyResult result = verify(100.0, {.views = 16, .judged_views = 8});
+  EXPECT_GT(result.gap_pixels, 0U);
+  EXPECT_GT(result.mean_error, 0.05);
+}
+
+TEST_F(VerifyPlacement, PicturesShowTheSameScene) {
+  const VerifyResult result = verify(100.0, {.views = 32, .pictures = 4});
+  EXPECT_EQ(result.pictures.size(), 4U);
+  EXPECT_LT(result.mean_error, 0.03);
+  EXPECT_GT(result.mean_error, 0.0);
+  for (const auto& pictures : result.pictures) {
+    const auto& view = result.views[pictures.view];
+    EXPECT_NEAR(mean_error(pictures.original, pictures.with_impostors), view.mean_error, 1e-12);
+    for (std::size_t i = 3; i < pictures.original.rgba.size(); i += 4) ASSERT_EQ(pictures.original.rgba[i], 255);
+  }
+}
+
+TEST_F(VerifyPlacement, WithoutViewsOrImpostorsThereIsStillAResult) {
+  world.placement.cpvs.clear();
+  world.placement.impostors.clear();
+  world.glb = encode_impostor_glb({});
+  const VerifyResult result = verify(100.0, {.views = 4});
+  EXPECT_EQ(result.views.size(), 4U);
+  EXPECT_EQ(result.judged_views, 0U);
+  EXPECT_THAT(result.left_out, Contains(HasSubstr("no impostor")));
+}
+
+TEST(WorstViews, ByTurnsTheLargestErrorAndTheSlowest) {
+  std::vector<VerifiedView> views(4);
+  views[0].mean_error = 0.5;
+  views[1].mean_error = 0.1;
+  views[2].estimated_after_ms = 9.0;
+  views[3].estimated_after_ms = 10.0;
+  views[2].measured_after_ms = 12.0;  // what was measured counts
+  EXPECT_THAT(worst_views(views, 3), testing::ElementsAre(0, 2, 1));
+  EXPECT_THAT(worst_views(views, 9), testing::UnorderedElementsAre(0, 1, 2, 3));
+  EXPECT_TRUE(worst_views({}, 4).empty());
+}
+
+}  // namespace
+}  // namespace standin
