@@ -2,8 +2,6 @@
 // must find fault with the thesis' own layer set-up and with centre sampling.
 #include <gtest/gtest.h>
 
-#include <iostream>
-
 #include "render/impostor/bake.h"
 #include "tests/render/impostor/ray_judge.h"
 
@@ -15,18 +13,44 @@ using test::Verdict;
 constexpr Box kObjects{Vec3(-4.0, -3.0, -5.0), Vec3(4.0, 3.0, 5.0)};
 
 struct Case {
-  std::vector<test::WorldTriangle> triangles;
+  std::vector<test::Surface> surfaces;
   Scene scene;
 };
 
 Case random_case(std::uint64_t seed, int count, const Box& box) {
   Rng rng(seed);
   Case result;
-  result.triangles = test::random_triangles(rng, box, count);
+  const auto triangles = test::random_triangles(rng, box, count);
   test::SmallScene scene;
-  scene.add_object(result.triangles);
+  scene.add_object(triangles);
   result.scene = std::move(scene.scene);
+  result.surfaces = test::opaque_surfaces(triangles);
   return result;
+}
+
+/// Foliage: triangles with a mask of random dots, `repeats` times over each.
+Case masked_case(std::uint64_t seed, int count, double repeats, const Texture& mask) {
+  Rng rng(seed);
+  Case result;
+  const auto triangles = test::random_triangles(rng, kObjects, count);
+  const std::array<Vec2, 3> uvs{Vec2(0.1, 0.2), Vec2(repeats, 0.0), Vec2(0.3, repeats)};
+  Material material = test::SmallScene::white();
+  material.alpha_mode = AlphaMode::kMask;
+  material.texture = 0;
+  test::SmallScene scene;
+  scene.scene.textures.push_back(mask);
+  scene.add_object(triangles, material, std::vector<std::array<Vec2, 3>>(triangles.size(), uvs));
+  result.scene = std::move(scene.scene);
+  for (const auto& triangle : triangles) result.surfaces.push_back({triangle, uvs, &mask});
+  return result;
+}
+
+Texture random_mask(std::uint64_t seed, int width, int height, double opaque) {
+  Rng rng(seed, 5);
+  Texture mask{"mask", width, height, {}};
+  for (int i = 0; i < width * height; ++i)
+    for (const int c : {40, 160, 60, rng.uniform() < opaque ? 255 : 0}) mask.rgba.push_back(static_cast<std::uint8_t>(c));
+  return mask;
 }
 
 ViewCell shaft_cell(double tan_half, double min_distance) {
@@ -40,11 +64,7 @@ Verdict judged(const Case& c, const ViewCell& cell, const BakeQuality& quality, 
   Camera camera;
   camera.width = camera.height = 256;
   const Impostor impostor = bake_layered(c.scene, {{0}, cell}, camera, quality);
-  const Verdict verdict = test::judge(c.triangles, impostor, camera.pixel_angle_rad(), 400, seed);
-  if (getenv("V"))
-    std::cout << seed << " layers " << impostor.layers.size() << " " << impostor.frame.width << "x" << impostor.frame.height << " quads "
-              << impostor.quads.size() << " judged " << verdict.judged << " gaps " << verdict.gaps << " par " << verdict.worst_parallax
-              << " of " << verdict.parallax_judged << "\n";
+  const Verdict verdict = test::judge(c.surfaces, impostor, camera.pixel_angle_rad(), 400, seed);
   return verdict;
 }
 
@@ -83,6 +103,21 @@ TEST(Promise, HoldsWhereTheParallaxLimitBinds) {
     worst = std::max(worst, verdict.worst_parallax);
   }
   EXPECT_GT(worst, 0.8);
+}
+
+TEST(Promise, HoldsForMaskedSurfaces) {
+  int seed = 40, masked_pixels = 0;
+  for (const double repeats : {0.5, 3.0, 12.0})
+    for (const double opaque : {0.5, 0.9}) {
+      SCOPED_TRACE("seed " + std::to_string(++seed));
+      const Texture mask = random_mask(static_cast<std::uint64_t>(seed), 13, 32, opaque);
+      const Case c = masked_case(static_cast<std::uint64_t>(seed), 60, repeats, mask);
+      const Verdict verdict = judged(c, shaft_cell(0.2, 20.0), {}, static_cast<std::uint64_t>(seed));
+      EXPECT_EQ(verdict.gaps, 0) << "of " << verdict.judged;
+      EXPECT_LE(verdict.worst_parallax, 1.0 + 1e-6);
+      masked_pixels += verdict.judged;
+    }
+  EXPECT_GT(masked_pixels, 200);
 }
 
 TEST(Promise, CentreSamplingBreaksIt) {

@@ -12,22 +12,44 @@
 
 namespace standin::test {
 
-/// Distance along the ray to a triangle's plane if it is hit (border included), both sides.
-[[nodiscard]] inline std::optional<double> hit(const WorldTriangle& t, const Vec3& origin, const Vec3& direction) {
+struct Surface {
+  WorldTriangle corners;
+  std::array<Vec2, 3> uvs{Vec2(0.0), Vec2(0.0), Vec2(0.0)};
+  const Texture* mask = nullptr;  // opaque where the nearest texel's alpha is at least half
+};
+
+[[nodiscard]] inline std::vector<Surface> opaque_surfaces(const std::vector<WorldTriangle>& triangles) {
+  std::vector<Surface> surfaces;
+  for (const WorldTriangle& triangle : triangles) surfaces.push_back({triangle});
+  return surfaces;
+}
+
+[[nodiscard]] inline bool passes(const Texture& mask, const Vec2& uv) {
+  const Vec2 wrapped = uv - glm::floor(uv);
+  const int x = std::min(static_cast<int>(wrapped.x * mask.width), mask.width - 1);
+  const int y = std::min(static_cast<int>(wrapped.y * mask.height), mask.height - 1);
+  return mask.rgba[4 * static_cast<std::size_t>(y * mask.width + x) + 3] >= 128;
+}
+
+/// Distance along the ray to the surface if it is hit (border included), from either side.
+[[nodiscard]] inline std::optional<double> hit(const Surface& surface, const Vec3& origin, const Vec3& direction) {
+  const WorldTriangle& t = surface.corners;
   const Vec3 e1 = t[1] - t[0], e2 = t[2] - t[0], p = glm::cross(direction, e2);
   const double det = glm::dot(e1, p);
   if (det == 0.0) return std::nullopt;
   const Vec3 s = origin - t[0], q = glm::cross(s, e1);
   const double u = glm::dot(s, p) / det, v = glm::dot(direction, q) / det, distance = glm::dot(e2, q) / det;
   if (u < 0.0 || v < 0.0 || u + v > 1.0 || distance <= 0.0) return std::nullopt;
+  if (surface.mask != nullptr &&
+      !passes(*surface.mask, surface.uvs[0] + u * (surface.uvs[1] - surface.uvs[0]) + v * (surface.uvs[2] - surface.uvs[0])))
+    return std::nullopt;
   return distance;
 }
 
-[[nodiscard]] inline std::optional<double> first_hit(const std::vector<WorldTriangle>& triangles, const Vec3& origin,
-                                                     const Vec3& direction) {
+[[nodiscard]] inline std::optional<double> first_hit(const std::vector<Surface>& surfaces, const Vec3& origin, const Vec3& direction) {
   std::optional<double> nearest;
-  for (const WorldTriangle& triangle : triangles)
-    if (const auto distance = hit(triangle, origin, direction); distance && (!nearest || *distance < *nearest)) nearest = distance;
+  for (const Surface& surface : surfaces)
+    if (const auto distance = hit(surface, origin, direction); distance && (!nearest || *distance < *nearest)) nearest = distance;
   return nearest;
 }
 
@@ -91,8 +113,8 @@ struct Verdict {
 };
 
 /// One pixel: the ray from `viewpoint` along `direction`.
-inline void judge_pixel(const std::vector<WorldTriangle>& original, const Impostor& impostor, const DrawnImpostor& drawn,
-                        const Vec3& viewpoint, const Vec3& direction, double pixel_rad, Verdict& verdict) {
+inline void judge_pixel(const std::vector<Surface>& original, const Impostor& impostor, const DrawnImpostor& drawn, const Vec3& viewpoint,
+                        const Vec3& direction, double pixel_rad, Verdict& verdict) {
   const Vec3 d = glm::normalize(direction);
   const Vec3 side = glm::normalize(glm::cross(d, std::abs(d.y) < 0.9 ? Vec3(0, 1, 0) : Vec3(1, 0, 0))), other = glm::cross(side, d);
   double farthest = 0.0;
@@ -115,8 +137,8 @@ inline void judge_pixel(const std::vector<WorldTriangle>& original, const Impost
   }
   const Layer& layer = impostor.layers[shown->layer];
   const Vec3 from_reference = (shown->point - f.reference_viewpoint) / layer.distance_m;  // per unit of depth
-  for (const WorldTriangle& triangle : original) {
-    const auto depth = hit(triangle, f.reference_viewpoint, from_reference);
+  for (const Surface& surface : original) {
+    const auto depth = hit(surface, f.reference_viewpoint, from_reference);
     if (!depth || *depth < layer.near_m - 1e-9 || *depth > layer.far_m + 1e-9) continue;
     const Vec3 x = f.reference_viewpoint + *depth * from_reference - viewpoint, q = shown->point - viewpoint;
     const double angle = std::atan2(glm::length(glm::cross(x, q)), glm::dot(x, q));
@@ -142,13 +164,13 @@ inline void judge_pixel(const std::vector<WorldTriangle>& original, const Impost
 }
 
 /// Rays from random viewpoints of the cell to random points of the original.
-[[nodiscard]] inline Verdict judge(const std::vector<WorldTriangle>& original, const Impostor& impostor, double pixel_rad, int rays,
+[[nodiscard]] inline Verdict judge(const std::vector<Surface>& original, const Impostor& impostor, double pixel_rad, int rays,
                                    std::uint64_t seed) {
   Rng rng(seed, 77);
   const DrawnImpostor drawn(impostor);
   Verdict verdict;
   for (int i = 0; i < rays; ++i) {
-    const WorldTriangle& t = original[rng.below(original.size())];
+    const WorldTriangle& t = original[rng.below(original.size())].corners;
     double u = rng.uniform(), v = rng.uniform();
     if (u + v > 1.0) u = 1.0 - u, v = 1.0 - v;
     const Vec3 viewpoint = random_viewpoint(rng, impostor.view_cell), target = t[0] + u * (t[1] - t[0]) + v * (t[2] - t[0]);
