@@ -1,0 +1,203 @@
+// Hostile and damaged glTF: each guard must be the one that fires.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "render/base/rng.h"
+#include "tests/render/scene/glb_maker.h"
+#include "tests/render/scene/temporary_folder.h"
+
+namespace standin {
+namespace {
+
+using test::GlbMaker;
+using test::load_failure;
+using test::noted;
+using test::square_glb;
+using test::TemporaryFolder;
+using Kind = LoadNote::Kind;
+
+ErrorWord failure_of(const GlbMaker& maker, const std::string& part, const LoadOptions& options = {}) {
+  const TemporaryFolder folder;
+  return load_failure(folder.write("scene.glb", maker.glb()), part, options);
+}
+
+TEST(GltfBroken, MissingFile) {
+  EXPECT_EQ(load_failure("/nowhere/scene.glb", "/nowhere/scene.glb"), ErrorWord::kFileMissing);
+}
+
+// Every prefix of a good file is a broken file, never a crash or half a scene.
+TEST(GltfBroken, TruncatedAnywhere) {
+  const TemporaryFolder folder;
+  const std::string whole = square_glb().glb();
+  for (std::size_t size = 0; size < whole.size(); size += 7) {
+    EXPECT_EQ(load_failure(folder.write("cut.glb", whole.substr(0, size))), ErrorWord::kFileBroken) << size;
+  }
+}
+
+// Whatever byte changes, loading gives a scene or a Failure.
+TEST(GltfBroken, FlippedBytesNeverCrash) {
+  const TemporaryFolder folder;
+  const std::string whole = square_glb().glb();
+  Rng rng(7);
+  int loaded = 0;
+  for (int trial = 0; trial < 400; ++trial) {
+    std::string damaged = whole;
+    for (int flip = 0; flip < 3; ++flip) damaged[rng.below(damaged.size())] = static_cast<char>(rng.below(256));
+    try {
+      const Scene scene = load_scene(folder.write("flipped.glb", damaged));
+      ++loaded;
+      for (const Mesh& mesh : scene.meshes) {
+        for (const std::uint32_t index : mesh.indices) ASSERT_LT(index, mesh.positions.size());
+        for (const glm::vec3& p : mesh.positions) ASSERT_TRUE(std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z));
+      }
+    } catch (const Failure&) {
+    }
+  }
+  EXPECT_GT(loaded, 0);
+  EXPECT_LT(loaded, 400);
+}
+
+TEST(GltfBroken, HugeCountIsRefusedBeforeItIsRead) {
+  GlbMaker maker = square_glb();
+  maker.json["accessors"][0]["count"] = 4'000'000'000U;
+  EXPECT_EQ(failure_of(maker, "do not fit"), ErrorWord::kFileBroken);
+  maker.json["accessors"][0].erase("bufferView");
+  EXPECT_EQ(failure_of(maker, "no bytes"), ErrorWord::kFileBroken);
+}
+
+TEST(GltfBroken, RangesThatWrapAround) {
+  GlbMaker maker = square_glb();
+  maker.json["accessors"][0]["byteOffset"] = std::numeric_limits<std::uint64_t>::max() - 3;
+  EXPECT_EQ(failure_of(maker, "do not fit"), ErrorWord::kFileBroken);
+  maker = square_glb();
+  maker.json["bufferViews"][0]["byteOffset"] = 8;
+  maker.json["bufferViews"][0]["byteLength"] = std::numeric_limits<std::uint64_t>::max() - 7;
+  EXPECT_EQ(failure_of(maker, "covers bytes"), ErrorWord::kFileBroken);
+}
+
+TEST(GltfBroken, NumbersThatAreNone) {
+  GlbMaker maker = square_glb();
+  for (const auto& wrong : {GlbMaker::Json(-1), GlbMaker::Json(1.5), GlbMaker::Json("4"), GlbMaker::Json(1e300)}) {
+    maker.json["accessors"][0]["count"] = wrong;
+    EXPECT_EQ(failure_of(maker, "not a whole number"), ErrorWord::kFileBroken) << wrong;
+  }
+  maker = square_glb();
+  maker.json["nodes"][0]["matrix"] = {1, 2, 3};
+  EXPECT_EQ(failure_of(maker, "list of 16 numbers"), ErrorWord::kFileBroken);
+}
+
+TEST(GltfBroken, ReferencesToNothing) {
+  GlbMaker maker = square_glb();
+  maker.json["nodes"][0]["mesh"] = 5;
+  EXPECT_EQ(failure_of(maker, "meshes[5]"), ErrorWord::kFileBroken);
+  maker = square_glb();
+  maker.primitive()["material"] = 2;
+  EXPECT_EQ(failure_of(maker, "materials[2]"), ErrorWord::kFileBroken);
+  maker = square_glb();
+  maker.json["bufferViews"][0]["buffer"] = 3;
+  EXPECT_EQ(failure_of(maker, "buffers[3]"), ErrorWord::kFileBroken);
+}
+
+TEST(GltfBroken, NodeCycle) {
+  GlbMaker maker = square_glb();
+  maker.json["nodes"][0]["children"] = {0};
+  EXPECT_EQ(failure_of(maker, "twice"), ErrorWord::kFileBroken);
+}
+
+TEST(GltfBroken, JsonNestedTooDeep) {
+  const TemporaryFolder folder;
+  const std::string deep = R"({"asset":{"version":"2.0"},"extras":)" + std::string(100000, '[') + std::string(100000, ']') + "}";
+  EXPECT_EQ(load_failure(folder.write("deep.gltf", deep), "nested deeper"), ErrorWord::kFileBroken);
+}
+
+TEST(GltfBroken, OldVersion) {
+  GlbMaker maker = square_glb();
+  maker.json["asset"]["version"] = "1.0";
+  EXPECT_EQ(failure_of(maker, "'1.0'"), ErrorWord::kFileBroken);
+}
+
+TEST(GltfBroken, RequiredExtensionsAreRefusedByName) {
+  GlbMaker maker = square_glb();
+  maker.json["extensionsRequired"] = {"KHR_mesh_quantization", "KHR_draco_mesh_compression"};
+  EXPECT_EQ(failure_of(maker, "KHR_draco_mesh_compression"), ErrorWord::kExtensionUnknown);
+}
+
+TEST(GltfBroken, UrisStayInTheFolder) {
+  for (const std::string uri : {"/etc/passwd", "../secret.bin", "a/../../secret.bin", "%2e%2e/secret.bin", "..%5Csecret.bin",
+                                "http://example.org/x.bin", "file:///etc/passwd", "C:\\secret.bin"}) {
+    GlbMaker maker = square_glb();
+    maker.json["images"] = GlbMaker::Json::array({{{"uri", uri}}});
+    EXPECT_EQ(failure_of(maker, "'"), ErrorWord::kUriForbidden) << uri;
+    maker = square_glb();
+    maker.json["buffers"] = GlbMaker::Json::array({{{"uri", uri}, {"byteLength", 4}}});
+    EXPECT_EQ(failure_of(maker, "'"), ErrorWord::kUriForbidden) << uri;
+  }
+}
+
+TEST(GltfBroken, LinksMayNotLeadOut) {
+  const TemporaryFolder folder;
+  GlbMaker maker = square_glb();
+  maker.json["images"] = GlbMaker::Json::array({{{"uri", "link/hostname"}}});
+  const auto file = folder.write("scene.glb", maker.glb());
+  std::filesystem::create_directory_symlink("/etc", folder.path() / "link");
+  EXPECT_EQ(load_failure(file, "leads out"), ErrorWord::kUriForbidden);
+}
+
+TEST(GltfBroken, MissingBufferFile) {
+  GlbMaker maker = square_glb();
+  maker.json["buffers"] = GlbMaker::Json::array({{{"uri", "gone.bin"}, {"byteLength", 4}}});
+  EXPECT_EQ(failure_of(maker, "gone.bin"), ErrorWord::kFileMissing);
+}
+
+TEST(GltfBroken, BadTrianglesAreDroppedAndCounted) {
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const float inf = std::numeric_limits<float>::infinity();
+  GlbMaker maker;
+  maker.show({0, 0, 0, 1, 0, 0, 1, 1, 0, nan, 0, 0, 0, inf, 0, 2, 0, 0},
+             {0, 1, 2, /**/ 0, 1, 3, /**/ 0, 4, 2, /**/ 0, 1, 99, /**/ 0, 1, 5, /**/ 1, 1, 2, /**/ 0, 1});
+  const TemporaryFolder folder;
+  const Scene scene = load_scene(folder.write("scene.glb", maker.glb()));
+  EXPECT_EQ(scene.triangle_count(), 1U);
+  EXPECT_EQ(scene.meshes[0].positions.size(), 3U);
+  EXPECT_EQ(noted(scene, Kind::kDropped, "triangles", "not finite"), 2U);
+  EXPECT_EQ(noted(scene, Kind::kDropped, "triangles", "out of range"), 1U);
+  EXPECT_EQ(noted(scene, Kind::kDropped, "triangles", "no area"), 2U);
+  EXPECT_EQ(noted(scene, Kind::kDropped, "indices"), 2U);
+}
+
+TEST(GltfBroken, NothingLeftIsRefusedWithTheReason) {
+  GlbMaker maker;
+  maker.show({0, 0, 0, 1, 0, 0, 2, 0, 0}, {0, 1, 2});
+  EXPECT_EQ(failure_of(maker, "no area"), ErrorWord::kSceneEmpty);
+  maker = square_glb();
+  maker.primitive()["mode"] = 0;
+  EXPECT_EQ(failure_of(maker, "points and lines"), ErrorWord::kSceneEmpty);
+  maker = square_glb();
+  maker.json["nodes"][0]["scale"] = {0, 0, 0};
+  EXPECT_EQ(failure_of(maker, "flattens"), ErrorWord::kSceneEmpty);
+}
+
+TEST(GltfBroken, TooManyTriangles) {
+  LoadOptions options;
+  options.max_triangles = 1;
+  EXPECT_EQ(failure_of(square_glb(), "2 triangles", options), ErrorWord::kFileBroken);
+}
+
+TEST(GltfBroken, BrokenImageIsANoteOnly) {
+  GlbMaker maker = square_glb();
+  const std::string words = "no image";
+  maker.json["images"] = GlbMaker::Json::array({{{"bufferView", maker.view(words.data(), words.size())}}});
+  maker.json["textures"] = GlbMaker::Json::array({{{"source", 0}}});
+  maker.json["materials"] = GlbMaker::Json::array({{{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}}});
+  maker.primitive()["material"] = 0;
+  const TemporaryFolder folder;
+  const Scene scene = load_scene(folder.write("scene.glb", maker.glb()));
+  EXPECT_EQ(noted(scene, Kind::kWarning, "textures", "images[0]"), 1U);
+  EXPECT_EQ(scene.materials.at(0).texture, -1);
+}
+
+}  // namespace
+}  // namespace standin
