@@ -43,7 +43,7 @@ class Subdivider {
 
   std::vector<SearchedCell> run() {
     std::vector<SearchedCell> frontier = search_leaves();
-    for (const SearchedCell& searched : frontier) terms_ += searched.found.seen.size();
+    for (const SearchedCell& searched : frontier) count(searched);
     std::vector<SearchedCell> done;
     while (!frontier.empty()) frontier = halve(std::move(frontier), done);
     std::sort(done.begin(), done.end(), [](const SearchedCell& a, const SearchedCell& b) { return a.cell.key < b.cell.key; });
@@ -56,6 +56,7 @@ class Subdivider {
     result.intervals = used_intervals(searched);
     result.visible_sets = visibility_.sets;
     result.terms.reserve(terms_);
+    result.cpvs.reserve(cpvs_);
     for (SearchedCell& one : searched) {
       budget_.check();
       result.worst_predicted_ms = std::max(result.worst_predicted_ms, one.cell.worst_predicted_ms);
@@ -69,7 +70,7 @@ class Subdivider {
   [[nodiscard]] std::uint64_t cells_not_halved() const { return cells_not_halved_; }
 
  private:
-  // Children searched at a time; the limit on terms is looked at between batches, so this is fixed and not a matter of threads.
+  // Children searched at a time; the limits are looked at between batches, so this is fixed and not a matter of threads.
   static constexpr std::size_t kBatch = 256;
 
   [[nodiscard]] std::int32_t visible_set_of(const CellKey& leaf) const {
@@ -130,6 +131,13 @@ class Subdivider {
     return children;
   }
 
+  void count(const SearchedCell& searched) {
+    terms_ += searched.found.seen.size();
+    cpvs_ += searched.found.hot.size();
+  }
+
+  [[nodiscard]] bool within_limits() const { return terms_ <= options_.max_terms && cpvs_ <= options_.max_cpvs; }
+
   // CPVs of the last cell of `result`.
   void add_cpvs(const SearchedCell& searched, Subdivision& result) const {
     if (searched.found.hot.empty()) return;
@@ -155,14 +163,15 @@ class Subdivider {
                      [](const SearchedCell& a, const SearchedCell& b) { return a.cell.worst_predicted_ms > b.cell.worst_predicted_ms; });
     std::vector<SearchedCell> children;
     std::size_t next = 0;
-    while (next < frontier.size() && terms_ <= options_.max_terms) {
+    while (next < frontier.size() && within_limits()) {
       const std::size_t first = next;
       auto batch = search_children(frontier, child_tasks(frontier, next));
       for (std::size_t i = first; i < next; ++i) {
         terms_ -= frontier[i].found.seen.size();
+        cpvs_ -= frontier[i].found.hot.size();
         frontier[i] = {};
       }
-      for (const SearchedCell& child : batch) terms_ += child.found.seen.size();
+      for (const SearchedCell& child : batch) count(child);
       std::move(batch.begin(), batch.end(), std::back_inserter(children));
     }
     cells_not_halved_ += frontier.size() - next;
@@ -178,6 +187,7 @@ class Subdivider {
   RegionEstimator estimator_;
   std::vector<std::uint32_t> all_objects_;
   std::uint64_t terms_ = 0;
+  std::uint64_t cpvs_ = 0;
   std::uint64_t cells_not_halved_ = 0;
 };
 
@@ -190,6 +200,7 @@ Subdivision subdivide(const Scene& scene, const std::vector<std::uint32_t>& hier
   Subdivision result = subdivider.assemble(subdivider.run());
   if (subdivider.cells_not_halved() > 0)
     result.left_out.push_back("halving " + std::to_string(subdivider.cells_not_halved()) + " more hot cells in position: more than " +
+                              std::to_string(subdivision_options.max_cpvs) + " problem views or " +
                               std::to_string(subdivision_options.max_terms) + " object terms otherwise");
   return result;
 }

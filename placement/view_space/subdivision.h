@@ -47,7 +47,7 @@ struct Subdivision {
   std::vector<RegionTerm> terms;             // per CPV, by hierarchy rank of the object
   std::vector<std::vector<std::uint32_t>> visible_sets;
   double worst_predicted_ms = 0.0;    // over all leaf regions, in budget or not
-  std::vector<std::string> left_out;  // e.g. hot cells not halved, since max_terms would be passed
+  std::vector<std::string> left_out;  // e.g. hot cells not halved, since max_terms or max_cpvs would be passed
 
   [[nodiscard]] std::span<const RegionTerm> terms_of(const Cpv& cpv) const {
     return std::span(terms).subspan(cpv.first_term, cpv.term_count);
@@ -56,8 +56,10 @@ struct Subdivision {
 
 struct SubdivisionOptions {
   int threads = 1;
-  double predicted_budget_ms = 0.0;      // a region is a CPV when its predicted bound exceeds this
-  std::uint64_t max_terms = 20'000'000;  // 20 bytes each while it runs; hot cells are no longer halved beyond it
+  double predicted_budget_ms = 0.0;  // a region is a CPV when its predicted bound exceeds this
+  // Hot cells are no longer halved beyond either; the leaf cubes themselves are always searched in full.
+  std::uint64_t max_terms = 20'000'000;  // 20 bytes each while it runs
+  std::uint64_t max_cpvs = 1'000'000;
 };
 
 /// Visible sets belong to cubes of the leaf level: `visible_sets[i]` to `visible_cells[i]` (sorted); empty: no visibility. Finer cells

@@ -235,13 +235,16 @@ TEST(Subdivision, HotCellsAreHalvedAndColdOnesKept) {
   EXPECT_TRUE(found.left_out.empty());
 }
 
-TEST(Subdivision, HalvingStopsAtTheLimitOnTermsAndSaysSo) {
+TEST(Subdivision, HalvingStopsAtEitherLimitAndSaysSo) {
   const World world = small_town(2);
-  SubdivisionOptions options;
-  options.max_terms = 1;
-  const Subdivision found = world.subdivide_for(0.0, test::triangle_time_model(), {}, options);
-  for (const Cell& cell : found.cells) EXPECT_EQ(cell.key.level, world.space.leaf_level);
-  EXPECT_THAT(found.left_out, testing::ElementsAre(testing::HasSubstr("more than 1 object terms otherwise")));
+  SubdivisionOptions few_terms, few_cpvs;
+  few_terms.max_terms = 1;
+  few_cpvs.max_cpvs = 1;
+  for (const SubdivisionOptions& options : {few_terms, few_cpvs}) {
+    const Subdivision found = world.subdivide_for(0.0, test::triangle_time_model(), {}, options);
+    for (const Cell& cell : found.cells) EXPECT_EQ(cell.key.level, world.space.leaf_level);
+    EXPECT_THAT(found.left_out, testing::ElementsAre(testing::HasSubstr("more hot cells in position: more than ")));
+  }
 }
 
 TEST(Subdivision, TheSameForAnyNumberOfThreads) {
