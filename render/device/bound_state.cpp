@@ -54,6 +54,7 @@ void BoundState::draw(const MeshRange& range, const Mat4& clip_from_mesh) {
   }
   const glm::mat4 matrix(clip_from_mesh);
   gl_.UniformMatrix4fv(kClipFromMesh, 1, GL_FALSE, glm::value_ptr(matrix));
+  // OpenGL takes the offset into the bound index buffer as a pointer. NOLINTNEXTLINE(performance-no-int-to-ptr)
   const void* first = reinterpret_cast<const void*>(range.first_index * sizeof(std::uint32_t));
   gl_.DrawElementsBaseVertex(GL_TRIANGLES, range.index_count, GL_UNSIGNED_INT, first, range.base_vertex);
   ++counts.draws;

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <compare>
 #include <cstdint>
+#include <tuple>
 
 namespace standin {
 
@@ -14,14 +14,16 @@ struct OrderedDraw {
   std::uint64_t key = 0;
   double distance_m = 0.0;
   std::uint32_t piece = 0;
-  friend auto operator<=>(const OrderedDraw&, const OrderedDraw&) = default;
+  friend bool operator<(const OrderedDraw& a, const OrderedDraw& b) {
+    return std::tie(a.key, a.distance_m, a.piece) < std::tie(b.key, b.distance_m, b.piece);
+  }
 };
 
 /// Masked draws come after all others: alpha tests switch llvmpipe's early depth rejection off.
 [[nodiscard]] inline std::uint64_t draw_key(bool masked, double distance_m, std::uint32_t state_rank) {
   constexpr double kNearestOctave_m = 0x1.0p-10;
-  constexpr int kBias = 10;
-  const auto octave = static_cast<std::uint64_t>(std::ilogb(std::max(distance_m, kNearestOctave_m)) + kBias);
+  constexpr std::int64_t kBias = 10;
+  const auto octave = static_cast<std::uint64_t>(kBias + std::ilogb(std::max(distance_m, kNearestOctave_m)));
   return (masked ? std::uint64_t{1} << 63 : 0) | octave << 32 | state_rank;
 }
 

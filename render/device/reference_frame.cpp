@@ -86,8 +86,10 @@ void add_object(Scene& scene, std::uint32_t mesh, std::uint32_t material, const 
 void add_boxes(Scene& scene) {
   Rng rng(kSeed);
   for (int i = 0; i < kBoxesPerSide * kBoxesPerSide; ++i) {
-    const double x = 9.0 * (i % kBoxesPerSide - 0.5 * kBoxesPerSide);
-    const double z = 9.0 * (static_cast<double>(i / kBoxesPerSide) - 0.5 * kBoxesPerSide);
+    const int row = i / kBoxesPerSide;
+    const int column = i % kBoxesPerSide;
+    const double x = 9.0 * (column - 0.5 * kBoxesPerSide);
+    const double z = 9.0 * (row - 0.5 * kBoxesPerSide);
     Mat4 world_from_box(1.0);
     world_from_box[0][0] = rng.uniform(0.8, 2.0);
     world_from_box[1][1] = rng.uniform(0.8, 5.0);
