@@ -19,12 +19,13 @@ struct TimedFrame {
 };
 
 struct CalibrationOptions {
-  double seconds = 45.0;  // of timed renders, all scenes together
+  double seconds = 45.0;  // of timed renders, in each call of sample_frames (baking and set-up not counted)
   double coverage = 0.99;
   std::uint64_t seed = 1;
 };
 
-/// Timed frames of one scene: clusters, whole frames (with and without impostors).
+/// Timed frames of one scene: clusters, whole frames (with and without impostors). The context must be current. Which frames are timed
+/// depends on the seed alone; fewer seconds stop earlier.
 [[nodiscard]] std::vector<TimedFrame> sample_frames(const Scene& scene, std::uint32_t group, Context& context, FrameTimer& timer,
                                                     const Camera& camera, const CalibrationOptions& options, const WorkBudget& budget);
 
@@ -39,7 +40,9 @@ struct FitSummary {
   std::vector<std::string> left_out;
 };
 
-/// Deterministic. Throws Failure(kBadUsage) naming the row for a time that is not finite and positive, or when there are too few frames.
+/// Deterministic. Errors and bound are those on frames held out: scene by scene, or in five random folds where there is one scene only (or
+/// one that no other can stand in for). Throws Failure(kBadUsage) naming the row for a time that is not finite and positive, or when there
+/// are too few frames.
 [[nodiscard]] FitSummary fit_time_model(const std::vector<TimedFrame>& frames, double coverage);
 
 /// How a model does on frames it has not seen (calibrate --evaluate).
