@@ -2,16 +2,22 @@
 
 const HEAT_LIMITS = [0.25, 0.5, 0.75, 1, 1.25, 1.5, 2, 3, Infinity];  // upper ends of the classes, in budgets; up to 1 is within budget
 
-function heatClass(time_ms, budget_ms) {
-  if (!isNumber(time_ms)) return "none";
-  return HEAT_LIMITS.findIndex((limit) => time_ms <= limit * budget_ms);
+/// {middle_ms, name}: the budget, or (a survey may have none) half of the slowest time.
+function heatScale(metrics, cells) {
+  if (isNumber(metrics.budget_ms)) return { middle_ms: metrics.budget_ms, name: "budget" };
+  return { middle_ms: cells.reduce((most, cell) => Math.max(most, cell.before_ms), 0) / 2 || 1, name: "half of the slowest" };
 }
 
-function heatLegend(budget_ms) {
+function heatClass(time_ms, middle_ms) {
+  if (!isNumber(time_ms)) return "none";
+  return HEAT_LIMITS.findIndex((limit) => time_ms <= limit * middle_ms);
+}
+
+function heatLegend({ middle_ms, name }) {
   const entries = HEAT_LIMITS.map((limit, index) => {
-    const low = index === 0 ? 0 : HEAT_LIMITS[index - 1] * budget_ms;
-    const range = limit === Infinity ? `over ${milliseconds(low)}` : `${significant(low, 3)} to ${milliseconds(limit * budget_ms)}`;
-    return element("li", {}, element("span", { class: "swatch", style: `background: var(--heat-${index})` }), limit === 1 ? `${range} (budget)` : range);
+    const low = index === 0 ? 0 : HEAT_LIMITS[index - 1] * middle_ms;
+    const range = limit === Infinity ? `over ${milliseconds(low)}` : `${significant(low, 3)} to ${milliseconds(limit * middle_ms)}`;
+    return element("li", {}, element("span", { class: "swatch", style: `background: var(--heat-${index})` }), limit === 1 ? `${range} (${name})` : range);
   });
   return element("ul", { class: "legend", "aria-label": "Colours of the heat map" }, ...entries);
 }
@@ -23,10 +29,10 @@ function planBounds(cells) {
 }
 
 /// One path per colour class, cells drawn slowest last, so that a slow one is not covered by a fast one above or below it.
-function heatPlate(cells, bounds, key, budget_ms, title) {
+function heatPlate(cells, bounds, key, middle_ms, title) {
   const outlines = new Map();
   for (const cell of cells) {
-    const shade = heatClass(cell[key], budget_ms);
+    const shade = heatClass(cell[key], middle_ms);
     const outline = `M${cell.x0} ${cell.z0}H${cell.x1}V${cell.z1}H${cell.x0}Z`;
     outlines.set(shade, (outlines.get(shade) || "") + outline);
   }
@@ -80,17 +86,17 @@ function slowestCells(cells) {
   return folded("The slowest cells as a table", table(columns, rows, "Slowest cells of the view space"));
 }
 
-function heatMapFigure(cells, budget_ms) {
+function heatMapFigure(cells, scale) {
   const bounds = planBounds(cells);
   const hasAfter = cells.some((cell) => isNumber(cell.after_ms));
-  const over = (key) => count(cells.filter((cell) => cell[key] > budget_ms).length);
+  const over = (key) => count(cells.filter((cell) => cell[key] > scale.middle_ms).length);
   const picture = (key, name) => {
-    const drawn = heatPlate(cells, bounds, key, budget_ms, `Plan view ${name}: ${over(key)} of ${count(cells.length)} cells over the budget`);
-    const caption = element("figcaption", {}, element("strong", {}, name), ` \u2014 ${over(key)} of ${count(cells.length)} cells over ${milliseconds(budget_ms)}`);
+    const drawn = heatPlate(cells, bounds, key, scale.middle_ms, `Plan view ${name}: ${over(key)} of ${count(cells.length)} cells over ${milliseconds(scale.middle_ms)}`);
+    const caption = element("figcaption", {}, element("strong", {}, name), ` \u2014 ${over(key)} of ${count(cells.length)} cells over ${milliseconds(scale.middle_ms)}`);
     return { ...drawn, figure: element("figure", {}, drawn.plate, caption) };
   };
   const plates = hasAfter ? [picture("before_ms", "Before"), picture("after_ms", "With impostors")] : [picture("before_ms", "As it is")];
   const readout = element("p", { class: "readout soft" });
   followPointer(plates, cells, readout);
-  return [element("div", { class: "side" }, ...plates.map((plate) => plate.figure)), heatLegend(budget_ms), readout, slowestCells(cells)];
+  return [element("div", { class: "side" }, ...plates.map((plate) => plate.figure)), heatLegend(scale), readout, slowestCells(cells)];
 }

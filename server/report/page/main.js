@@ -3,6 +3,7 @@
 function verdict({ metrics }) {
   const cpv = metrics.cpv || {}, verify = metrics.verify || {};
   const budget = milliseconds(metrics.budget_ms);
+  if (!isNumber(metrics.budget_ms)) return ["plain", "Survey", "how long frames take, and why; no budget was given."];
   if (!isNumber(cpv.solved)) return ["plain", "Survey", isNumber(cpv.count) ? `${count(cpv.count)} regions may exceed ${budget}.` : `Frame times against a budget of ${budget}.`];
   if (cpv.count === 0) return ["good", "Nothing to do", `no view exceeds ${budget}, so no impostor is needed.`];
   if (cpv.unsolved > 0) return ["bad", "Budget not met everywhere", `${count(cpv.unsolved)} of ${count(cpv.count)} slow regions cannot be brought under ${budget}; the rest is solved.`];
@@ -56,7 +57,7 @@ function contextLine({ metrics, job }) {
   const camera = job.camera || {};
   return [
     isNumber(field(metrics, "scene.objects")) ? `${count(metrics.scene.objects)} objects, ${count(metrics.scene.triangles)} triangles` : null,
-    `budget ${milliseconds(metrics.budget_ms)}`,
+    isNumber(metrics.budget_ms) ? `budget ${milliseconds(metrics.budget_ms)}` : null,
     field(job, "target.id") ? `on ${job.target.id}` : null,
     camera.width ? `${camera.width} x ${camera.height} pixels, ${significant(camera.fov_y_deg, 3)}\u00b0 field of view` : null,
     field(job, "view_space.kind") ? `view space: ${job.view_space.kind}` : null,
@@ -68,7 +69,7 @@ const SECTIONS = [heatMapSection, framesSection, viewsSection, unsolvedSection, 
 function buildPage(data) {
   const { metrics } = data;
   const name = data.job.scene_name || "scene";
-  document.title = `${name} at ${milliseconds(metrics.budget_ms)} \u2014 Standin`;
+  document.title = `${name}${isNumber(metrics.budget_ms) ? ` at ${milliseconds(metrics.budget_ms)}` : ""} \u2014 Standin`;
   const [tone, word, sentence] = verdict(data);
   const sections = SECTIONS.map((make) => make(data)).filter((made) => made !== null);
   const links = sections.map((made) => element("li", {}, element("a", { href: `#${made.id}` }, made.querySelector("h2").textContent)));

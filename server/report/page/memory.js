@@ -18,17 +18,19 @@ function groupBytes(impostors, names, nameOf) {
   return [...groups.values()].filter((group) => group.impostors > 0);
 }
 
+/// entries: [{name, share: 0..1, value: text}]
+function shareBars(title, entries) {
+  const rows = entries.flatMap(({ name, share, value }) => [
+    element("span", {}, name),
+    element("span", { class: "track", "aria-hidden": "true" }, element("span", { class: "fill", style: `width: ${(100 * share).toFixed(2)}%` })),
+    element("span", { class: "value" }, value),
+  ]);
+  return element("div", {}, element("h3", {}, title), element("div", { class: "bars" }, ...rows));
+}
+
 function bars(title, groups) {
   const total = groups.reduce((sum, group) => sum + group.bytes, 0);
-  const rows = groups.flatMap((group) => {
-    const share = total > 0 ? group.bytes / total : 0;
-    return [
-      element("span", {}, group.name),
-      element("span", { class: "track", "aria-hidden": "true" }, element("span", { class: "fill", style: `width: ${(100 * share).toFixed(2)}%` })),
-      element("span", { class: "value" }, `${bytes(group.bytes)} in ${count(group.impostors)}`),
-    ];
-  });
-  return element("div", {}, element("h3", {}, title), element("div", { class: "bars" }, ...rows));
+  return shareBars(title, groups.map((group) => ({ name: group.name, share: total > 0 ? group.bytes / total : 0, value: `${bytes(group.bytes)} in ${count(group.impostors)}` })));
 }
 
 function memoryBreakdown(impostors) {

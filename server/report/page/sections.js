@@ -9,8 +9,8 @@ function heatMapSection({ metrics }) {
   const cells = (metrics.heat_map || []).filter((cell) => isNumber(cell.before_ms));
   if (cells.length === 0) return null;
   const lead = "The view space from above, x to the right and z downwards. A cell's colour is the time bound of its slowest view direction: a time that its frames do not exceed, "
-    + "at the coverage the target file states. Blue is within the budget.";
-  return section("map", "Where it is slow", lead, ...heatMapFigure(cells, metrics.budget_ms));
+    + "at the coverage the target file states. Blue is within " + (isNumber(metrics.budget_ms) ? "the budget." : "half of the slowest time, since the job has no budget.");
+  return section("map", "Where it is slow", lead, ...heatMapFigure(cells, heatScale(metrics, cells)));
 }
 
 const FRAME_SERIES = [
@@ -148,15 +148,22 @@ function stagesSection({ metrics }) {
   return section("stages", `Where the ${seconds(total)} went`, facts, table(columns, rows, "Run time of the stages"));
 }
 
-/// metrics.causes: [{name, ms, regions}]: objects by their share in the slow regions' times.
+/// metrics.causes: shares of the slow regions' time by kind of work, and the objects that cost most: {draws_share, ..., objects: [{name, ms}]}.
 function causesSection({ metrics }) {
-  const causes = metrics.causes || [];
-  if (causes.length === 0) return null;
+  const causes = metrics.causes || {}, objects = causes.objects || [];
+  const shares = [["draw calls and state changes", causes.draws_share], ["triangles", causes.triangles_share], ["pixels", causes.pixels_share]]
+    .filter(([, share]) => isNumber(share) && share > 0);
+  if (objects.length === 0 && shares.length === 0) return null;
+  const total = objects.reduce((sum, cause) => sum + cause.ms, 0);
   const columns = [
-    { title: "object", text: (cause) => cause.name }, { title: "time in its slowest region", number: true, text: (cause) => milliseconds(cause.ms) },
-    { title: "slow regions it is in", number: true, text: (cause) => count(cause.regions) },
+    { title: "object", text: (cause) => cause.name || `object ${cause.object}` },
+    { title: "time over all slow cells", number: true, text: (cause) => milliseconds(cause.ms) },
+    { title: "share of those listed", number: true, text: (cause) => percent(total > 0 ? cause.ms / total : 0) },
   ];
-  return section("causes", "Why it is slow", "The objects that cost most where the budget is exceeded.", table(columns, causes, "Causes of slow regions"));
+  const lead = "What the time goes into where the budget is exceeded, taking the slowest region of each cell.";
+  const work = shares.length > 0 ? shareBars("By kind of work", shares.map(([name, share]) => ({ name, share, value: percent(share) }))) : null;
+  return section("causes", "Why it is slow", lead, work, objects.length > 0 ? element("h3", {}, "Objects that cost most") : null,
+    objects.length > 0 ? table(columns, objects, "Objects that cost most") : null);
 }
 
 function blockingText(blocking) {
@@ -181,7 +188,7 @@ function unsolvedSection({ metrics }) {
 }
 
 function leftOutSection({ metrics }) {
-  const entries = metrics.left_out || [];
+  const entries = [...(metrics.left_out || []), ...(field(metrics, "verify.left_out") || [])];
   if (entries.length === 0) return null;
   const text = (entry) => (typeof entry === "string" ? entry : [entry.stage || entry.what || entry.name, entry.reason || entry.why].filter(Boolean).join(": "));
   return section("left-out", "What was left out, and why", "", element("ul", {}, ...entries.map((entry) => element("li", {}, text(entry)))));
