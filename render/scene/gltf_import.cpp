@@ -203,8 +203,8 @@ class GltfReader {
     const Json* primitives = member(json, "primitives");
     const std::size_t count = primitives != nullptr && primitives->is_array() ? primitives->size() : 0;
     PartRange range{static_cast<std::uint32_t>(scene_.parts.size()), 0};
+    const std::string name = text(json, "name", "mesh_" + std::to_string(mesh));
     for (std::size_t p = 0; p < count; ++p) {
-      const std::string name = text(json, "name", "mesh_" + std::to_string(mesh)) + (count > 1 ? "_" + std::to_string(p) : "");
       add_part((*primitives)[p], name, place + ".primitives[" + std::to_string(p) + "]");
     }
     range.count = static_cast<std::uint32_t>(scene_.parts.size()) - range.first;

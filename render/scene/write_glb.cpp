@@ -1,7 +1,8 @@
 // A Scene as one binary glTF 2.0 file. Objects that show the same parts become nodes of one glTF mesh; meshes are stored once however many
 // materials they wear.
 
-#include <cstring>
+#include <algorithm>
+#include <array>
 #include <map>
 #include <nlohmann/json.hpp>
 
@@ -27,19 +28,11 @@ class GlbWriter {
   explicit GlbWriter(const Scene& scene) : scene_(scene) {}
 
   void write(const std::filesystem::path& file) {
-    json_["asset"] = {{"version", "2.0"}, {"generator", "standin"}};
     for (const Texture& texture : scene_.textures) add_texture(texture);
     for (const Material& material : scene_.materials) add_material(material);
     for (const Mesh& mesh : scene_.meshes) add_accessors(mesh);
-    OrderedJson roots = OrderedJson::array();
-    for (const Object& object : scene_.objects) {
-      roots.push_back(json_["nodes"].size());
-      add_node(object);
-    }
-    json_["scene"] = 0;
-    json_["scenes"] = OrderedJson::array({{{"nodes", roots}}});
-    json_["buffers"] = OrderedJson::array({{{"byteLength", binary_.size()}}});
-    write_chunks(file);
+    for (const Object& object : scene_.objects) add_node(object);
+    write_chunks(assembled(), file);
   }
 
  private:
@@ -50,23 +43,23 @@ class GlbWriter {
     if (target != 0) view["target"] = target;
     const auto* first = static_cast<const std::uint8_t*>(data);
     binary_.insert(binary_.end(), first, first + size);
-    json_["bufferViews"].push_back(std::move(view));
-    return json_["bufferViews"].size() - 1;
+    views_.push_back(std::move(view));
+    return views_.size() - 1;
   }
 
   template <typename T>
   std::size_t add_accessor(const std::vector<T>& values, int component_type, const char* type, int target) {
     const std::size_t view = add_view(values.data(), values.size() * sizeof(T), target);
-    json_["accessors"].push_back({{"bufferView", view}, {"componentType", component_type}, {"count", values.size()}, {"type", type}});
-    return json_["accessors"].size() - 1;
+    accessors_.push_back({{"bufferView", view}, {"componentType", component_type}, {"count", values.size()}, {"type", type}});
+    return accessors_.size() - 1;
   }
 
   void add_texture(const Texture& texture) {
     const std::string png = encode_png(texture);
     const std::size_t view = add_view(png.data(), png.size(), 0);
-    const std::size_t index = json_["images"].size();
-    json_["images"].push_back({{"name", texture.name}, {"mimeType", "image/png"}, {"bufferView", view}});
-    json_["textures"].push_back({{"source", index}});
+    const std::size_t index = images_.size();
+    images_.push_back({{"name", texture.name}, {"mimeType", "image/png"}, {"bufferView", view}});
+    textures_.push_back({{"source", index}});
   }
 
   void add_material(const Material& material) {
@@ -82,15 +75,14 @@ class GlbWriter {
     }
     if (material.unlit) {
       json["extensions"] = {{"KHR_materials_unlit", OrderedJson::object()}};
-      json_["extensionsUsed"] = {"KHR_materials_unlit"};
     }
-    json_["materials"].push_back(std::move(json));
+    materials_.push_back(std::move(json));
   }
 
   // The primitive of each mesh, but for its material.
   void add_accessors(const Mesh& mesh) {
     OrderedJson attributes{{"POSITION", add_accessor(mesh.positions, kFloat, "VEC3", kArrayBuffer)}};
-    OrderedJson& accessor = json_["accessors"].back();
+    OrderedJson& accessor = accessors_.back();
     const auto corner = [](const Vec3& v) { return OrderedJson{v.x, v.y, v.z}; };
     Box bounds;
     for (const glm::vec3& position : mesh.positions) bounds.extend(Vec3(position));
@@ -113,7 +105,7 @@ class GlbWriter {
       const Part& part = scene_.parts[object.first_part + p];
       key.emplace_back(part.mesh, part.material);
     }
-    const auto [place, fresh] = meshes_.try_emplace(key, json_["meshes"].size());
+    const auto [place, fresh] = mesh_indices_.try_emplace(key, meshes_.size());
     if (!fresh) return place->second;
     OrderedJson primitives = OrderedJson::array();
     for (const auto& [mesh, material] : key) {
@@ -121,7 +113,7 @@ class GlbWriter {
       primitives.back()["material"] = material;
     }
     const std::string name = key.empty() ? "" : scene_.meshes[key.front().first].name;
-    json_["meshes"].push_back({{"name", name}, {"primitives", std::move(primitives)}});
+    meshes_.push_back({{"name", name}, {"primitives", std::move(primitives)}});
     return place->second;
   }
 
@@ -130,11 +122,34 @@ class GlbWriter {
     for (int column = 0; column < 4; ++column) {
       for (int row = 0; row < 4; ++row) matrix.push_back(object.world_from_object[column][row]);
     }
-    json_["nodes"].push_back({{"name", object.name}, {"mesh", mesh_of(object)}, {"matrix", std::move(matrix)}});
+    nodes_.push_back({{"name", object.name}, {"mesh", mesh_of(object)}, {"matrix", std::move(matrix)}});
   }
 
-  void write_chunks(const std::filesystem::path& file) {
-    std::string text = json_.dump(-1, ' ', false, OrderedJson::error_handler_t::replace);
+  [[nodiscard]] OrderedJson assembled() const {
+    OrderedJson roots = OrderedJson::array();
+    for (std::size_t i = 0; i < nodes_.size(); ++i) roots.push_back(i);
+    OrderedJson json;
+    json["asset"] = {{"version", "2.0"}, {"generator", "standin"}};
+    const bool unlit = std::any_of(scene_.materials.begin(), scene_.materials.end(), [](const Material& m) { return m.unlit; });
+    if (unlit) json["extensionsUsed"] = {"KHR_materials_unlit"};
+    json["scene"] = 0;
+    json["scenes"] = OrderedJson::array({{{"nodes", roots}}});
+    const auto add = [&](const char* key, const OrderedJson& list) {
+      if (!list.empty()) json[key] = list;  // glTF forbids empty lists
+    };
+    add("nodes", nodes_);
+    add("meshes", meshes_);
+    add("materials", materials_);
+    add("textures", textures_);
+    add("images", images_);
+    add("accessors", accessors_);
+    add("bufferViews", views_);
+    json["buffers"] = OrderedJson::array({{{"byteLength", binary_.size()}}});
+    return json;
+  }
+
+  void write_chunks(const OrderedJson& json, const std::filesystem::path& file) {
+    std::string text = json.dump(-1, ' ', false, OrderedJson::error_handler_t::replace);
     text.resize((text.size() + 3) / 4 * 4, ' ');
     binary_.resize((binary_.size() + 3) / 4 * 4, 0);
     const std::size_t length = 12 + 8 + text.size() + 8 + binary_.size();
@@ -151,10 +166,16 @@ class GlbWriter {
   }
 
   const Scene& scene_;
-  OrderedJson json_;
+  OrderedJson nodes_ = OrderedJson::array();
+  OrderedJson meshes_ = OrderedJson::array();
+  OrderedJson materials_ = OrderedJson::array();
+  OrderedJson textures_ = OrderedJson::array();
+  OrderedJson images_ = OrderedJson::array();
+  OrderedJson accessors_ = OrderedJson::array();
+  OrderedJson views_ = OrderedJson::array();
   std::vector<std::uint8_t> binary_;
-  std::vector<OrderedJson> primitives_;
-  std::map<std::vector<std::pair<std::uint32_t, std::uint32_t>>, std::size_t> meshes_;
+  std::vector<OrderedJson> primitives_;                                                       // per Scene::meshes
+  std::map<std::vector<std::pair<std::uint32_t, std::uint32_t>>, std::size_t> mesh_indices_;  // by (mesh, material) of each part
 };
 
 }  // namespace
