@@ -72,9 +72,10 @@ json verify_json(const VerifyResult& result) {
 }
 
 json image_json(const VerifyResult& result) {
+  const bool judged = result.judged_views > 0;
   return {{"views", result.judged_views},
-          {"gap_pixels", result.gap_pixels},
-          {"max_parallax_ratio", result.max_parallax_ratio},
+          {"gap_pixels", judged ? json(result.gap_pixels) : json()},
+          {"max_parallax_ratio", judged ? json(result.max_parallax_ratio) : json()},
           {"mean_error", result.mean_error}};
 }
 

@@ -129,7 +129,7 @@ function curvesSection({ metrics }) {
   return section("curves", "What more run time would buy", "Each stage that approximates can be made more exact for more time; these points are from this run.", element("div", { class: "side" }, ...figures));
 }
 
-const STAGE_ORDER = ["load", "visibility", "view_space", "candidates", "select", "bake", "verify"];
+const STAGE_ORDER = ["load", "view_space", "visibility", "survey", "size_model", "candidates", "select", "bake", "assemble", "verify"];
 
 function stagesSection({ metrics }) {
   const rank = ([name]) => (STAGE_ORDER.includes(name) ? STAGE_ORDER.indexOf(name) : STAGE_ORDER.length);
