@@ -26,20 +26,27 @@ struct Block {
 /// The upper outline of what lies on a page, as steps from left to right.
 class Skyline {
  public:
-  Skyline(std::uint32_t width, std::uint32_t max_height) : width_(width), max_height_(max_height), steps_{{0, 0}} {}
+  Skyline(std::uint32_t width, std::uint32_t max_height)
+      : width_(width), max_height_(max_height), steps_{{0, 0}}, refused_height_(width + 1, max_height + 1) {}
 
-  /// Places a rectangle as low as possible, then as far left; false where it does not fit.
+  /// Places a rectangle as low as possible, then as far left; false where it does not fit. The outline only rises: what was refused once
+  /// stays refused, and so does all that is no smaller.
   bool place(std::uint32_t width, std::uint32_t height, std::uint32_t& x, std::uint32_t& y) {
+    if (width > width_ || height >= refused_height_[width]) return false;
     std::size_t best = steps_.size();
-    std::uint32_t best_y = max_height_;
+    std::uint32_t best_y = max_height_ - height + 1;
     for (std::size_t i = 0; i < steps_.size() && steps_[i].x + width <= width_; ++i) {
+      if (steps_[i].y >= best_y) continue;
       const std::uint32_t level = level_over(i, width);
-      if (level + height <= max_height_ && (best == steps_.size() || level < best_y)) {
+      if (level < best_y) {
         best = i;
         best_y = level;
       }
     }
-    if (best == steps_.size()) return false;
+    if (best == steps_.size()) {
+      for (std::uint32_t w = width; w <= width_; ++w) refused_height_[w] = std::min(refused_height_[w], height);
+      return false;
+    }
     x = steps_[best].x;
     y = best_y;
     raise(best, width, best_y + height);
@@ -74,7 +81,8 @@ class Skyline {
   std::uint32_t width_;
   std::uint32_t max_height_;
   std::uint32_t used_height_ = 0;
-  std::vector<Step> steps_;  // ascending x from 0; each reaches to the next one, the last to the page's border
+  std::vector<Step> steps_;                    // ascending x from 0; each reaches to the next one, the last to the page's border
+  std::vector<std::uint32_t> refused_height_;  // by width: rectangles at least that high do not fit
 };
 
 struct Placed {
