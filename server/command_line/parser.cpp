@@ -25,6 +25,7 @@ struct Builder {
   std::vector<std::pair<const SpecField*, std::string>>& flags;
   std::string& config;
   bool& print_config;
+  bool& print_schema;
 
   void spec_flags(const std::vector<std::string>& sections) {
     for (const auto& field : spec_fields()) {
@@ -40,6 +41,7 @@ struct Builder {
     }
     app.add_option("--config", config, "TOML file with settings; flags win over it");
     app.add_flag("--print-config", print_config, "print the complete effective settings as JSON and exit");
+    app.add_flag("--print-schema", print_schema, "print the JSON Schema of a configuration and exit");
   }
   void quiet() { app.add_flag("--quiet", parsed.quiet, "no progress on stderr"); }
   void json() { app.add_flag("--json", arguments().json, "machine-readable output"); }
@@ -69,10 +71,11 @@ struct Grammar {
   std::vector<std::pair<const SpecField*, std::string>> flags;
   std::string config;
   bool print_config = false;
+  bool print_schema = false;
 
   Builder command(const std::string& name, const std::string& help) {
     CLI::App* sub = app.add_subcommand(name, help);
-    Builder builder{*sub, parsed, flags, config, print_config};
+    Builder builder{*sub, parsed, flags, config, print_config, print_schema};
     builder.quiet();
     return builder;
   }
@@ -170,6 +173,10 @@ ParsedCommand parse_command_line(int argc, char** argv) {
     return {};
   } catch (const CLI::ParseError& error) {
     throw Failure(ErrorWord::kBadUsage, error.what());
+  }
+  if (grammar.print_schema) {
+    std::cout << spec_schema().dump(2) << "\n";
+    return {};
   }
   if (!grammar.config.empty()) read_config(grammar.parsed.context.spec, grammar.config);
   for (const auto& [field, text] : grammar.flags) set_field_from_text(grammar.parsed.context.spec, *field, text);

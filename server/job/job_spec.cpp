@@ -104,7 +104,7 @@ std::vector<SpecField> make_fields() {
             at_least(0)),
       field("scene.split_extent", "--split-extent", &JobSpec::split_extent,
             "split objects longer than this share of the scene's diagonal; 0: never", between(0, 1)),
-      field("scene.texture_folders", "--texture-folder", &JobSpec::texture_folders, "further folders to look for textures in", {}, false),
+      field("scene.texture_folders", "--texture-folder", &JobSpec::texture_folders, "further folders to look for textures in", json::object(), false),
       field("camera.fov_y_deg", "--fov-y-deg", &JobSpec::fov_y_deg, "vertical field of view in degrees", above(0.0, 150.0)),
       field("camera.width", "--width", &JobSpec::width, "image width in pixels", between(16, 8192)),
       field("camera.height", "--height", &JobSpec::height, "image height in pixels", between(16, 8192)),
@@ -144,7 +144,7 @@ std::vector<SpecField> make_fields() {
       field("verify.views", "--verify-views", &JobSpec::verify_views, "views that place renders for verification", between(0, 100'000),
             false),
       field("seed", "--seed", &JobSpec::seed, "seed of everything random", at_least(0)),
-      field("force", "--force", &JobSpec::force, "stages to run although they could be left out", {}, false),
+      field("force", "--force", &JobSpec::force, "stages to run although they could be left out", json::object(), false),
       field("threads", "--threads", &JobSpec::threads, "threads; 0: one per processor", between(0, 1024), false),
   };
 }
