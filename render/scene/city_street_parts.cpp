@@ -17,31 +17,35 @@ Vec2 rounded(double angle, double a, double b) {
   return {a * c * scale, b * s * scale};
 }
 
-// How full the section is at share v of the length: blunt, rounded ends.
-double fullness(double v, double least) {
-  const double end = std::min(v, 1.0 - v) / 0.12;
-  return end >= 1.0 ? 1.0 : least + (1.0 - least) * std::sqrt(std::max(1.0 - (1.0 - end) * (1.0 - end), 0.0));
+// How full the section is at share v of the length: 1 in the middle, rounded down to `least` over a share `end` of the length.
+double fullness(double v, double least, double end) {
+  const double inward = std::min(v, 1.0 - v) / end;
+  return inward >= 1.0 ? 1.0 : least + (1.0 - least) * std::sqrt(std::max(1.0 - (1.0 - inward) * (1.0 - inward), 0.0));
 }
 
 void add_body(MeshBuilder& paint, const CarShape& car, int level) {
-  const double half_height = 0.3 * car.height_m;
+  constexpr double kBluntness = 0.6;
+  const double half_height = 0.27 * car.height_m;
+  const double middle = 0.22 + half_height;
+  const auto half_width = [&](double full) { return 0.5 * car.width_m * (0.7 + 0.3 * full); };
   const auto body = [&](double u, double v) {
-    const double full = fullness(v, 0.35);
-    const Vec2 section = rounded(2.0 * std::numbers::pi * u, 0.5 * car.width_m * (0.7 + 0.3 * full), half_height * full);
-    return Vec3(section.x, 0.25 + half_height + section.y, (v - 0.5) * car.length_m);
+    const double full = fullness(v, kBluntness, 0.12);
+    const Vec2 section = rounded(2.0 * std::numbers::pi * u, half_width(full), half_height * full);
+    return Vec3(section.x, middle + section.y, (v - 0.5) * car.length_m);
   };
   paint.surface(body, 4 + 2 * level, 6 + 3 * level);
-  for (const double end : {-1.0, 1.0}) {  // bumpers close the ends
-    const double z = end * (0.5 * car.length_m - 0.06);
-    paint.box({-0.42 * car.width_m, 0.3, z - 0.1}, {0.42 * car.width_m, 0.25 + 1.5 * half_height, z + 0.1});
+  for (const double end : {-1.0, 1.0}) {  // bumpers close the blunt ends
+    const double z = end * (0.5 * car.length_m - 0.02);
+    const Vec3 half(0.98 * half_width(kBluntness), 0.95 * kBluntness * half_height, 0.05);
+    paint.box(Vec3(0.0, middle, z) - half, Vec3(0.0, middle, z) + half);
   }
 }
 
 void add_cabin(MeshBuilder& glass, const CarShape& car, int level) {
-  const double foot = 0.25 + 0.5 * car.height_m;
+  const double foot = 0.22 + 0.5 * car.height_m;
   const auto cabin = [&](double u, double v) {
-    const double full = fullness(v, 0.1);
-    const Vec2 section = rounded(std::numbers::pi * u, 0.44 * car.width_m * (0.8 + 0.2 * full), (car.height_m - foot) * full);
+    const double full = fullness(v, 0.05, 0.3);
+    const Vec2 section = rounded(std::numbers::pi * u, 0.43 * car.width_m * (0.85 + 0.15 * full), (car.height_m - foot) * full);
     return Vec3(section.x, foot + section.y, (car.cabin_from + (car.cabin_to - car.cabin_from) * v - 0.5) * car.length_m);
   };
   glass.surface(cabin, 3 + level, 4 + 2 * level);
@@ -55,7 +59,7 @@ void add_wheels(MeshBuilder& tyre, const CarShape& car, int level) {
       const Vec3 inner(out - side * 0.22, 0.31, z);
       const Vec3 outer(out, 0.31, z);
       tyre.tube(inner, outer, 0.31, 0.31, segments, 1);
-      tyre.tube(outer, outer + Vec3(side * 0.02, 0, 0), 0.31, 0.05, segments, 1);
+      tyre.tube(outer, outer + Vec3(side * 0.02, 0, 0), 0.31, 0.01, segments, 1);
     }
   }
 }

@@ -91,18 +91,19 @@ Texture bark(std::uint64_t seed) {
   });
 }
 
-// A twig of leaves: ellipses on a transparent ground whose colour is that of the leaves, so that filtering shows no fringe.
+// A twig of leaves: ellipses on a transparent ground whose colour is that of the leaves, so that filtering shows no fringe. More than half
+// of it is opaque, or smaller mip levels would fall below the cutoff and far trees lose their leaves.
 Texture leaves(std::uint64_t seed) {
   constexpr int kSize = 128;
   struct Leaf {
     int x, y, dx, dy, tone;
   };
   Rng rng(seed, 500);
-  std::array<Leaf, 26> twig{};
+  std::array<Leaf, 48> twig{};
   for (Leaf& leaf : twig) {
     const auto within = [&](std::uint64_t low, std::uint64_t high) { return static_cast<int>(low + rng.below(high - low)); };
-    leaf = {within(20, 108), within(20, 108), within(0, 25) - 12, within(0, 25) - 12, within(0, 60) - 30};
-    if (leaf.dx * leaf.dx + leaf.dy * leaf.dy < 36) leaf.dx = 9;
+    leaf = {within(14, 114), within(14, 114), within(0, 25) - 12, within(0, 25) - 12, within(0, 60) - 30};
+    if (leaf.dx * leaf.dx + leaf.dy * leaf.dy < 64) leaf.dx = 11;
   }
   return painted("leaves", kSize, [&](int x, int y) -> std::array<int, 4> {
     const Rgb green{74, 112, 42};

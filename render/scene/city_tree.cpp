@@ -32,7 +32,7 @@ Crown crown_of(const TreeShape& shape) {
 std::vector<Vec3> add_wood(MeshBuilder& wood, const TreeShape& shape, std::uint64_t triangles, Rng& rng) {
   const Crown crown = crown_of(shape);
   const int segments = triangles < 600 ? 5 : (triangles < 4000 ? 8 : 14);
-  const double radius_m = 0.028 * shape.height_m;
+  const double radius_m = 0.02 * shape.height_m;
   wood.tube({0, 0, 0}, crown.centre, radius_m, 0.5 * radius_m, segments, triangles < 600 ? 1 : 4);
   const int branch_segments = triangles < 4000 ? 4 : 7;
   const int branch_rings = triangles < 4000 ? 1 : 3;
@@ -50,7 +50,7 @@ std::vector<Vec3> add_wood(MeshBuilder& wood, const TreeShape& shape, std::uint6
 // Cards cover about the same area however many there are.
 void add_leaves(MeshBuilder& leaves, const TreeShape& shape, std::uint64_t cards, const std::vector<Vec3>& ends, Rng& rng) {
   const Crown crown = crown_of(shape);
-  const double cover = 4.5;  // area of all cards over that of the crown's outline seen from the side
+  const double cover = 5.5;  // area of all cards over that of the crown's outline seen from the side
   const double area_m2 = cover * std::numbers::pi * crown.radii.x * crown.radii.y / static_cast<double>(cards);
   const double half_m = std::min(std::max(0.5 * std::sqrt(area_m2), 0.04), 0.45 * crown.radii.x);
   const double spread = 0.42;
