@@ -18,6 +18,10 @@ struct TimedFrame {
   std::uint32_t group = 0;
 };
 
+/// Repeats a sample that the caller's timer is asked for: fewer than a verification's, since many rough samples teach a fit more than few
+/// exact ones.
+inline constexpr int kCalibrationRepeats = 5;
+
 struct CalibrationOptions {
   double seconds = 45.0;  // of timed renders, in each call of sample_frames (baking and set-up not counted)
   double coverage = 0.99;

@@ -18,7 +18,6 @@ namespace standin {
 namespace {
 
 constexpr std::size_t kMaxFrames = 5000;  // a scene; more teach the fit nothing
-constexpr double kDrawsPerFrame = 11.0;   // repeats, warm-up and the reference frame's share
 constexpr std::size_t kImpostors = 8;
 constexpr int kImpostorAttempts = 40;
 constexpr std::uint64_t kMaxBakedTriangles = 30'000;  // baking is not what the seconds are for
@@ -218,7 +217,7 @@ std::vector<TimedFrame> sample_frames(const Scene& scene, std::uint32_t group, C
     budget.report("calibrate", spent_ms / (1e3 * options.seconds));
     const Setup setup = sampler.setup(frames.size());
     const FrameSample sample = timer.time(renderer, setup.view, setup.list);
-    spent_ms += kDrawsPerFrame * sample.raw_milliseconds;
+    spent_ms += (kCalibrationRepeats + 1) * sample.raw_milliseconds + kCalibrationRepeats * timer.reference_ms();
     frames.push_back({sampler.features(setup), sample.milliseconds, group});
   }
   return frames;

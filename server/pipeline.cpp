@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <numeric>
+#include <optional>
 
 #include "placement/candidates/candidates.h"
 #include "placement/view_space/survey.h"
@@ -129,8 +130,13 @@ json common_metrics(const Surveyed& job, const StageClock& clock) {
           {"peak_rss_bytes", peak_rss_bytes()}};
 }
 
-std::string fingerprint(const char* kind, const Surveyed& job, const JobSpec& spec) {
-  return json({{"kind", kind}, {"scene", job.world.scene.sha256}, {"target", job.target.sha256}, {"spec", to_json(spec, true)}}).dump();
+// Names a job by what goes into it.
+std::string fingerprint(const char* kind, const JobFiles& files, const JobSpec& spec) {
+  return json({{"kind", kind},
+               {"scene", sha256_hex(read_file(files.scene))},
+               {"target", sha256_hex(read_file(files.target))},
+               {"spec", to_json(spec, true)}})
+      .dump();
 }
 
 json select_metrics(const SelectedImpostors& selected, const Placement& placement) {
@@ -237,6 +243,8 @@ std::string inputs_json(const JobFiles& files) {
 }  // namespace
 
 JobOutcome run_survey(const JobFiles& files, const JobSpec& spec, const WorkBudget& budget) {
+  std::optional<OutputFolder> folder;
+  if (!files.folder.empty()) folder.emplace(files.folder, fingerprint("survey", files, spec));
   StageClock clock(budget);
   const Surveyed job = survey_scene(files, spec, clock, budget);
   JobOutcome outcome;
@@ -244,19 +252,18 @@ JobOutcome run_survey(const JobFiles& files, const JobSpec& spec, const WorkBudg
   outcome.metrics["causes"] = causes_json(job.world, job.reach.subdivision, job.target.model);
   outcome.metrics["heat_map"] = heat_map_json(job.reach.subdivision, nullptr, job.target.model);
   if (spec.budget_ms > 0.0) outcome.metrics["budget_ms"] = spec.budget_ms;
-  if (files.folder.empty()) return outcome;
-  OutputFolder folder(files.folder, fingerprint("survey", job, spec));
-  folder.write("metrics.json", outcome.metrics.dump(1));
-  folder.write("report.html", make_report(outcome.metrics, nullptr, {}));
-  folder.commit();
+  if (!folder) return outcome;
+  folder->write("metrics.json", outcome.metrics.dump(1));
+  folder->write("report.html", make_report(outcome.metrics, nullptr, {}));
+  folder->commit();
   return outcome;
 }
 
 JobOutcome run_place(const JobFiles& files, const JobSpec& spec, const WorkBudget& budget) {
   if (!(spec.budget_ms > 0.0)) throw Failure(ErrorWord::kBadUsage, "--budget-ms " + std::to_string(spec.budget_ms) + " violates: > 0");
+  OutputFolder folder(files.folder, fingerprint("place", files, spec));
   StageClock clock(budget);
   Surveyed job = survey_scene(files, spec, clock, budget);
-  OutputFolder folder(files.folder, fingerprint("place", job, spec));
   const Placed placed = place_impostors(job, spec, clock, budget);
   const VerifyResult verified = clock.run("verify", [&] { return verify(job, placed, spec, budget); });
 

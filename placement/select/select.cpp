@@ -29,6 +29,11 @@ class Selector {
     return std::move(result_);
   }
 
+  double lower_bound(double known_bytes, int iterations) {
+    set_aside();
+    return lagrangian_bound(problem_, columns_, ignored_, known_bytes, iterations, budget_);
+  }
+
  private:
   /// CPVs that need nothing, and those that nothing can solve: no bytes are spent on either.
   void set_aside() {
@@ -106,7 +111,7 @@ class Selector {
   }
 
   const SelectionProblem& problem_;
-  const SelectionConfig& config_;
+  const SelectionConfig config_;
   const WorkBudget& budget_;
   TreeOrder order_;
   Columns columns_;
@@ -125,6 +130,11 @@ Selection select_impostors(const SelectionProblem& problem, const SelectionConfi
       throw Failure(ErrorWord::kBadUsage, "initial candidate " + std::to_string(candidate) + " violates < " +
                                               std::to_string(problem.candidate_count()) + " (the number of candidates)");
   return Selector(problem, config, budget).run(initial);
+}
+
+double memory_lower_bound(const SelectionProblem& problem, double known_bytes, int iterations, const WorkBudget& budget) {
+  validate(problem);
+  return Selector(problem, SelectionConfig{}, budget).lower_bound(known_bytes, iterations);
 }
 
 }  // namespace standin

@@ -70,4 +70,8 @@ struct SelectionConfig {
 [[nodiscard]] Selection select_impostors(const SelectionProblem& problem, const SelectionConfig& config,
                                          std::span<const std::uint32_t> initial, const WorkBudget& budget);
 
+/// Lower bound on the bytes of any selection that meets every reachable CPV (math.md 5.5), from `iterations` subgradient steps.
+/// `known_bytes`: of a known selection.
+[[nodiscard]] double memory_lower_bound(const SelectionProblem& problem, double known_bytes, int iterations, const WorkBudget& budget);
+
 }  // namespace standin

@@ -101,7 +101,7 @@ int evaluate_target(const CommandContext& context) {
   if (context.spec.device != target.device || device->renderer() != target.renderer)
     throw Failure(ErrorWord::kDeviceUnavailable, "target " + context.arguments.evaluate + " was measured on " + target.device + ", " +
                                                      target.renderer + "; this is " + context.spec.device + ", " + device->renderer());
-  const auto timer = make_cpu_frame_timer(*device, {.reference_ms = target.reference_ms});
+  const auto timer = make_cpu_frame_timer(*device, {.repeats = kCalibrationRepeats, .reference_ms = target.reference_ms});
   const Evaluation result = evaluate(target.model, timed_frames(training_scenes(context), context, *device, *timer));
   const json object = {{"frames", result.frames},       {"median_error", result.median_error},
                        {"p90_error", result.p90_error}, {"coverage", result.coverage},
@@ -117,7 +117,7 @@ int calibrate_command(const CommandContext& context) {
   if (!context.arguments.evaluate.empty()) return evaluate_target(context);
   if (context.arguments.output.empty()) throw Failure(ErrorWord::kBadUsage, "calibrate needs -o FILE, or --evaluate FILE");
   const auto device = make_context(device_of(context.spec), context.spec.width, context.spec.height);
-  const auto timer = make_cpu_frame_timer(*device, {});
+  const auto timer = make_cpu_frame_timer(*device, {.repeats = kCalibrationRepeats});
   const FitSummary fit = fit_time_model(timed_frames(training_scenes(context), context, *device, *timer), CalibrationOptions{}.coverage);
   write_target(make_target(fit, *device, *timer, context.spec), context.arguments.output);
   if (context.arguments.json)

@@ -10,6 +10,8 @@ namespace {
 
 using nlohmann::json;
 
+constexpr std::size_t kNamedUnsolved = 10;
+
 JobFiles files_of(const CommandArguments& arguments) {
   return {arguments.scenes.front(), arguments.target, arguments.output};
 }
@@ -40,7 +42,12 @@ void print_place(const json& metrics) {
   std::printf("%s of %s CPVs solved, %s impostors, %.3f MB of texture (lower bound %.3f MB)\n", metrics["cpv"]["solved"].dump().c_str(),
               metrics["cpv"]["count"].dump().c_str(), metrics["impostors"]["count"].dump().c_str(),
               number(metrics, "memory", "texture_bytes") / 1e6, number(metrics, "bound", "memory_lower_bound_bytes") / 1e6);
+  std::size_t named = 0;
   for (const auto& entry : metrics["unsolved"]) {
+    if (++named > kNamedUnsolved) {
+      std::printf("... and %zu more, in metrics.json\n", metrics["unsolved"].size() - kNamedUnsolved);
+      break;
+    }
     std::printf("unsolved: cpv %s (%s): %.2f ms, lowest budget %.2f ms, because of", entry["cpv"].dump().c_str(),
                 entry["region"].get<std::string>().c_str(), entry["bound_after_ms"].get<double>(), entry["lowest_budget_ms"].get<double>());
     for (const auto& object : entry["blocking"]) std::printf(" %s", object["name"].get<std::string>().c_str());

@@ -43,7 +43,6 @@ struct Builder {
     app.add_flag("--print-config", print_config, "print the complete effective settings as JSON and exit");
     app.add_flag("--print-schema", print_schema, "print the JSON Schema of a configuration and exit");
   }
-  void quiet() { app.add_flag("--quiet", parsed.quiet, "no progress on stderr"); }
   void json() { app.add_flag("--json", arguments().json, "machine-readable output"); }
   void scene(bool required) {
     auto* option = app.add_option("SCENE", arguments().scenes, "scene file (glTF, GLB, OBJ, PLY, STL, AC3D ...)");
@@ -75,9 +74,8 @@ struct Grammar {
 
   Builder command(const std::string& name, const std::string& help) {
     CLI::App* sub = app.add_subcommand(name, help);
-    Builder builder{*sub, parsed, flags, config, print_config, print_schema};
-    builder.quiet();
-    return builder;
+    sub->fallthrough();
+    return {*sub, parsed, flags, config, print_config, print_schema};
   }
 };
 
@@ -162,6 +160,7 @@ void add_result_commands(Grammar& grammar) {
 ParsedCommand parse_command_line(int argc, char** argv) {
   Grammar grammar;
   grammar.app.require_subcommand(1);
+  grammar.app.add_flag("--quiet", grammar.parsed.quiet, "no progress on stderr");
   grammar.app.set_version_flag("--version", "standin " STANDIN_VERSION);
   add_input_commands(grammar);
   add_planning_commands(grammar);

@@ -50,7 +50,7 @@ struct JobSpec {
   std::uint32_t max_layers = 0;  // 0: 200 for walk, 400 for orbit
   int exchange_rounds = 0;
   int bound_iterations = 100;
-  int bake_rounds = 4;
+  int bake_rounds = 10;
   std::uint32_t size_bakes = 48;
 
   std::string techniques = "layered";

@@ -146,7 +146,7 @@ json unsolved_json(const World& world, const Subdivision& subdivision, const Pla
                   {"bound_after_ms", placed.bound_after_ms},
                   {"blocking", objects_json(world, largest_terms(drawn_terms(subdivision, cpv, placement, placed), kNamedObjects))}};
     const auto known = residual_of.find(p);
-    entry["residual_ms"] = known != residual_of.end() ? json(known->second) : json();
+    entry["residual_ms"] = known != residual_of.end() ? known->second : placed.bound_after_ms - budget_ms;
     entry["lowest_budget_ms"] = known != residual_of.end() ? model.bound_ms(predicted_budget_ms + known->second) : placed.bound_after_ms;
     list.push_back(std::move(entry));
   }

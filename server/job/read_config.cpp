@@ -1,7 +1,8 @@
 // TOML configuration files, through toml++ (the only file that includes it).
+#include <toml++/toml.h>
+
 #include <fstream>
 #include <sstream>
-#include <toml++/toml.h>
 
 #include "render/base/error.h"
 #include "server/job/job_spec.h"

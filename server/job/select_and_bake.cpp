@@ -68,6 +68,46 @@ class Baker {
   std::map<std::uint32_t, Impostor> baked_;
 };
 
+// How far estimates were off where they could be compared, as the factors that three of four bakes stay below: what is chosen next is what
+// looks cheapest, so the median would be too small (the winner's curse), and repair would chase its own estimates for many rounds.
+struct Correction {
+  double bytes = 1.0;
+  double quads = 1.0;
+  double texels = 1.0;  // of texels times their solid angle, which is what is paid for
+};
+
+double upper_quartile(std::vector<double> ratios) {
+  if (ratios.empty()) return 1.0;
+  const auto position = ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() * 3 / 4);
+  std::nth_element(ratios.begin(), position, ratios.end());
+  return *position;
+}
+
+double pixels_of(const ImpostorCost& cost) {
+  return cost.texels * cost.texel_angle_rad * cost.texel_angle_rad;
+}
+
+Correction compare(const std::vector<Candidate>& estimated, const std::vector<std::optional<BakedSize>>& real) {
+  std::vector<double> bytes, quads, texels;
+  for (std::size_t id = 0; id < estimated.size(); ++id) {
+    if (!real[id] || !(pixels_of(estimated[id].cost) > 0.0) || !(estimated[id].cost.quads > 0.0)) continue;
+    bytes.push_back(real[id]->bytes / estimated[id].bytes);
+    quads.push_back(real[id]->cost.quads / estimated[id].cost.quads);
+    texels.push_back(pixels_of(real[id]->cost) / pixels_of(estimated[id].cost));
+  }
+  return {upper_quartile(bytes), upper_quartile(quads), upper_quartile(texels)};
+}
+
+CandidateSet corrected(const CandidateSet& candidates, const Correction& by) {
+  CandidateSet result = candidates;
+  for (auto& candidate : result.candidates) {
+    candidate.bytes *= by.bytes;
+    candidate.cost.quads *= by.quads;
+    candidate.cost.texels *= by.texels;
+  }
+  return result;
+}
+
 // CPVs whose real bound misses the budget although the selection called them met.
 std::uint32_t count_short(const Subdivision& subdivision, const Selection& selection, const Baker& baker, const World& world,
                           const TimeModel& model, double budget_ms, double page_switch_ms) {
@@ -106,40 +146,85 @@ void collect(SelectedImpostors& result, Baker& baker) {
   }
 }
 
+// The rounds of one job.
+class Rounds {
+ public:
+  Rounds(const World& world, const Subdivision& subdivision, const CandidateSet& candidates, const TimeModel& model, double budget_ms,
+         const WorkBudget& budget)
+      : world_(world),
+        subdivision_(subdivision),
+        candidates_(candidates),
+        model_(model),
+        budget_ms_(budget_ms),
+        budget_(budget),
+        baker_(world, candidates.candidates),
+        current_(candidates) {
+    result_.atlas_pages = 1;
+  }
+
+  void select(const JobSpec& spec) {
+    result_.page_switch_ms = page_switches_ms(model_, result_.atlas_pages);
+    SelectionConfig config;
+    config.exchange_rounds = spec.exchange_rounds;
+    config.bound_iterations = 0;
+    result_.selection = select_impostors(problem(current_), config, result_.selection.chosen, budget_);
+  }
+
+  // True when what is selected is baked, and holds.
+  bool bake() {
+    const std::vector<std::uint32_t>& chosen = result_.selection.chosen;
+    BakeRound outcome;
+    outcome.estimated_bytes = baker_.bytes(chosen);
+    outcome.baked = baker_.bake(chosen, budget_);
+    outcome.real_bytes = baker_.bytes(chosen);
+    const std::uint32_t pages = pages_for(outcome.real_bytes);
+    outcome.short_cpvs = count_short(subdivision_, result_.selection, baker_, world_, model_, budget_ms_, page_switches_ms(model_, pages));
+    result_.rounds.push_back(outcome);
+    const bool settled = outcome.short_cpvs == 0 && pages <= result_.atlas_pages;
+    result_.atlas_pages = std::max(pages, result_.atlas_pages);
+    current_ = corrected(candidates_, compare(candidates_.candidates, baker_.sizes()));
+    return chosen.empty() || (settled && outcome.baked == 0);
+  }
+
+  SelectedImpostors finish(int bound_iterations) {
+    result_.page_switch_ms = page_switches_ms(model_, result_.atlas_pages);
+    SelectionSummary& summary = result_.selection.summary;
+    summary.bytes = baker_.bytes(result_.selection.chosen);
+    if (bound_iterations > 0)
+      summary.lower_bound_bytes = memory_lower_bound(problem(candidates_), summary.bytes, bound_iterations, budget_);
+    collect(result_, baker_);
+    return std::move(result_);
+  }
+
+ private:
+  [[nodiscard]] SelectionProblem problem(const CandidateSet& candidates) const {
+    const SelectionBudget limits{model_.predicted_budget_ms(budget_ms_), result_.page_switch_ms};
+    return make_selection_problem(world_.hierarchy, subdivision_, candidates, baker_.sizes(), model_, world_.camera, limits, world_.threads,
+                                  budget_);
+  }
+
+  const World& world_;
+  const Subdivision& subdivision_;
+  const CandidateSet& candidates_;
+  const TimeModel& model_;
+  double budget_ms_;
+  const WorkBudget& budget_;
+  Baker baker_;
+  CandidateSet current_;  // with estimates corrected by what baking found
+  SelectedImpostors result_;
+};
+
 }  // namespace
 
 SelectedImpostors select_and_bake(const World& world, const Subdivision& subdivision, const CandidateSet& candidates,
                                   const TimeModel& model, double budget_ms, const JobSpec& spec, StageClock& clock,
                                   const WorkBudget& budget) {
-  Baker baker(world, candidates.candidates);
-  SelectedImpostors result;
-  result.atlas_pages = 1;
-  for (int round = 1;; ++round) {
-    const bool last = round >= spec.bake_rounds;
-    result.page_switch_ms = page_switches_ms(model, result.atlas_pages);
-    clock.run("select", [&] {
-      const SelectionBudget limits{model.predicted_budget_ms(budget_ms), result.page_switch_ms};
-      const SelectionProblem problem = make_selection_problem(world.hierarchy, subdivision, candidates, baker.sizes(), model, world.camera,
-                                                              limits, world.threads, budget);
-      SelectionConfig config;
-      config.exchange_rounds = spec.exchange_rounds;
-      config.bound_iterations = spec.bound_iterations;
-      result.selection = select_impostors(problem, config, result.selection.chosen, budget);
-    });
-    BakeRound outcome;
-    outcome.estimated_bytes = baker.bytes(result.selection.chosen);
-    outcome.baked = clock.run("bake", [&] { return baker.bake(result.selection.chosen, budget); });
-    outcome.real_bytes = baker.bytes(result.selection.chosen);
-    const std::uint32_t pages = pages_for(outcome.real_bytes);
-    outcome.short_cpvs = count_short(subdivision, result.selection, baker, world, model, budget_ms, page_switches_ms(model, pages));
-    result.rounds.push_back(outcome);
-    const bool settled = outcome.baked == 0 && outcome.short_cpvs == 0 && pages <= result.atlas_pages;
-    result.atlas_pages = std::max(pages, result.atlas_pages);
-    if (last || settled || result.selection.chosen.empty()) break;
+  Rounds rounds(world, subdivision, candidates, model, budget_ms, budget);
+  for (int round = 0; round < spec.bake_rounds; ++round) {
+    clock.run("select", [&] { rounds.select(spec); });
+    if (clock.run("bake", [&] { return rounds.bake(); })) break;
   }
-  result.page_switch_ms = page_switches_ms(model, result.atlas_pages);
-  collect(result, baker);
-  return result;
+  return clock.run("select", [&] { return rounds.finish(spec.bound_iterations); });
 }
 
 }  // namespace standin
