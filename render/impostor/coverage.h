@@ -29,7 +29,7 @@ class ClosedCoverage {
     }
     const Range rows = touched(top, bottom, height_);
     if (rows.first > rows.last) return;
-    spans_.assign(static_cast<std::size_t>(rows.last - rows.first + 1), Span{});
+    spans_.assign(static_cast<std::size_t>(rows.last) - static_cast<std::size_t>(rows.first) + 1, Span{});
     if (rows.first == rows.last && top >= rows.first && bottom <= rows.first + 1.0) {
       for (std::size_t i = 0; i < piece.count; ++i) spans_[0].extend(piece.vertices[i].position.x);
     } else {

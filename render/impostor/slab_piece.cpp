@@ -64,12 +64,13 @@ Piece texel_piece(const Piece& piece, std::uint32_t x, std::uint32_t y) {
 }
 
 PieceVertex nearest_on_outline(const Piece& piece, const Vec2& point) {
+  const auto next = [&](std::size_t i) { return i + 1 < piece.count ? i + 1 : 0; };
   double least = std::numeric_limits<double>::infinity();
   std::size_t edge = 0;
   double edge_share = 0.0;
   for (std::size_t i = 0; i < piece.count; ++i) {
     const Vec2 from = piece.vertices[i].position;
-    const Vec2 along = piece.vertices[(i + 1) % piece.count].position - from;
+    const Vec2 along = piece.vertices[next(i)].position - from;
     const double length2 = glm::dot(along, along);
     const double share = length2 > 0.0 ? glm::clamp(glm::dot(point - from, along) / length2, 0.0, 1.0) : 0.0;
     const Vec2 offset = from + share * along - point;
@@ -80,7 +81,7 @@ PieceVertex nearest_on_outline(const Piece& piece, const Vec2& point) {
       edge_share = share;
     }
   }
-  return between(piece.vertices[edge], piece.vertices[(edge + 1) % piece.count], edge_share);
+  return between(piece.vertices[edge], piece.vertices[next(edge)], edge_share);
 }
 
 }  // namespace standin

@@ -23,7 +23,7 @@ std::array<std::uint8_t, 4> Surface::colour(const TriangleAttributes& triangle, 
   glm::vec3 colour(material_.base_colour);
   if (pyramid_ != nullptr) colour *= pyramid_->sample(triangle.uv_at(barycentric), level).colour;
   if (!material_.unlit) colour *= static_cast<float>(brightness(triangle.normal_at(barycentric)));
-  const auto byte = [](float channel) { return static_cast<std::uint8_t>(std::clamp(channel, 0.0F, 1.0F) * 255.0F + 0.5F); };
+  const auto byte = [](float channel) { return static_cast<std::uint8_t>(std::lround(255.0F * std::clamp(channel, 0.0F, 1.0F))); };
   return {byte(colour.r), byte(colour.g), byte(colour.b), 255};
 }
 

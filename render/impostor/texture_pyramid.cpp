@@ -55,7 +55,7 @@ void TexturePyramid::add_half_of(int level) {
           sum.weight += weight;
         }
       const glm::vec3 mean = sum.weight > 0.0F ? sum.colour / sum.weight : glm::vec3(0.0F);
-      for (int c = 0; c < 3; ++c) out[c] = static_cast<std::uint8_t>(mean[c] + 0.5F);
+      for (int c = 0; c < 3; ++c) out[c] = static_cast<std::uint8_t>(std::lround(mean[c]));
       out[3] = static_cast<std::uint8_t>(std::ceil(sum.weight / count));
     }
   levels_.push_back(coarse);
