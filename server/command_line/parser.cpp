@@ -40,8 +40,16 @@ struct Builder {
           ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
     }
     app.add_option("--config", config, "TOML file with settings; flags win over it");
-    app.add_flag("--print-config", print_config, "print the complete effective settings as JSON and exit");
-    app.add_flag("--print-schema", print_schema, "print the JSON Schema of a configuration and exit");
+    print_and_exit("--print-config", print_config, "print the complete effective settings as JSON and exit");
+    print_and_exit("--print-schema", print_schema, "print the JSON Schema of a configuration and exit");
+  }
+  // As with --help, arguments may be missing: CLI11 asks for them after its callbacks have run, in the order of definition.
+  void print_and_exit(const std::string& flag, bool& print, const std::string& help) {
+    const auto apply = [wanted = &print] {
+      *wanted = true;
+      throw CLI::Success();
+    };
+    app.add_flag_callback(flag, apply, help);
   }
   void json() { app.add_flag("--json", arguments().json, "machine-readable output"); }
   void scene(bool required) {
@@ -167,9 +175,11 @@ ParsedCommand parse_command_line(int argc, char** argv) {
   add_result_commands(grammar);
   try {
     grammar.app.parse(argc, argv);
-  } catch (const CLI::Success& done) {  // --help, --version
-    grammar.app.exit(done);
-    return {};
+  } catch (const CLI::Success& done) {
+    if (!grammar.print_config && !grammar.print_schema) {  // --help, --version
+      grammar.app.exit(done);
+      return {};
+    }
   } catch (const CLI::ParseError& error) {
     throw Failure(ErrorWord::kBadUsage, error.what());
   }
