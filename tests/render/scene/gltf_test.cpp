@@ -183,6 +183,14 @@ TEST(Gltf, MaterialsAsTheShadingRuleWantsThem) {
   EXPECT_TRUE(material.unlit);
 }
 
+TEST(Gltf, SpecularGlossinessIsReadAsDiffuse) {
+  GlbMaker maker = square_glb();
+  maker.json["extensionsRequired"] = {"KHR_materials_pbrSpecularGlossiness"};
+  maker.json["materials"] = Json::array({{{"extensions", {{"KHR_materials_pbrSpecularGlossiness", {{"diffuseFactor", {0, 1, 0, 1}}}}}}}});
+  maker.primitive()["material"] = 0;
+  EXPECT_EQ(loaded(maker).materials.at(0).base_colour, glm::vec4(0, 1, 0, 1));
+}
+
 TEST(Gltf, BlendBecomesAMaskAndIsNoted) {
   GlbMaker maker = square_glb();
   maker.json["materials"] = Json::array({{{"alphaMode", "BLEND"}}});
