@@ -1,8 +1,9 @@
 // From a scene file to a Scene.
 //
-// glTF/GLB has a reader of its own (about a second for 10 M triangles): its JSON is parsed by nlohmann-json, and every byte range is
-// checked before it is read. tinygltf would open any URI, copy the binary chunk and crash on some malformed files, so that nothing but a
-// JSON parser would be left of it behind our own checks. All other formats go through Assimp.
+// glTF/GLB has a reader of its own (3.4 s of processor time for 10.4 M triangles in 549 MB, under 1 s where they are instances): its JSON
+// is parsed by nlohmann-json, and every byte range is checked before it is read. tinygltf would open any URI, copy the binary chunk and
+// crash on some malformed files, so that nothing but a JSON parser would be left of it behind our own checks. All other formats go through
+// Assimp.
 //
 // A URI inside a scene never leaves the scene's folder; required extensions that are not read are refused by name; NaN, Inf and
 // out-of-range indices are dropped and counted in Scene::notes, or refused when nothing is left.
