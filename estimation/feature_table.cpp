@@ -162,7 +162,7 @@ double FeatureTable::covering_triangles(const ObjectShape& shape, double pixels_
 
 Features FeatureTable::estimate(std::uint32_t object, const PreparedView& view) const {
   const Object& drawn = scene_->objects[object];
-  if (!may_intersect(view.planes, drawn.bounds)) return {};
+  if (!may_intersect(view.frustum, drawn.bounds)) return {};
   const Mat3 world_from_mesh(drawn.world_from_object);
   const MeshInEye mesh{view.eye_from_world * world_from_mesh, view.eye_from_world * (Vec3(drawn.world_from_object[3]) - view.position),
                        glm::determinant(world_from_mesh) < 0.0 ? -1.0 : 1.0};

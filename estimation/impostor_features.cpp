@@ -61,7 +61,7 @@ Features impostor_features_bound(const ImpostorCost& cost, const Camera& camera)
 
 Features impostor_features(const Impostor& impostor, const Box& objects_bounds, const View& view, const Camera& camera) {
   const PreparedView prepared(view, camera);
-  if (!may_intersect(prepared.planes, objects_bounds) || impostor.quads.empty()) return {};
+  if (!may_intersect(prepared.frustum, objects_bounds) || impostor.quads.empty()) return {};
   const Projection projection(camera);
   Features features = quad_features(static_cast<double>(impostor.quads.size()));
   for (const Quad& quad : impostor.quads) {

@@ -15,10 +15,10 @@ struct PreparedView {
   PreparedView(const View& view, const Camera& camera)
       : position(view.position),
         eye_from_world(glm::transpose(world_from_eye_rotation(view.direction))),
-        planes(frustum_planes(view, camera)) {}
+        frustum(frustum_of(view, camera)) {}
   Vec3 position;
   Mat3 eye_from_world;
-  std::array<Plane, 5> planes;
+  Frustum frustum;
 };
 
 struct Projection {

@@ -8,6 +8,7 @@
 #include "placement/candidates/size_model.h"
 #include "render/base/parallel.h"
 #include "render/base/rng.h"
+#include "render/impostor/texture_pyramid.h"
 
 namespace standin {
 namespace {
@@ -30,13 +31,13 @@ std::vector<std::uint32_t> spread(const std::vector<Candidate>& candidates, std:
 }
 
 /// Nothing where the sketch was too hopeful, or where the bake shows nothing.
-std::optional<SizeSample> bake_sample(const Scene& scene, const Candidate& candidate, const Camera& camera, const BakeQuality& quality,
-                                      const WorkBudget& budget) {
+std::optional<SizeSample> bake_sample(const Scene& scene, const TexturePyramids& textures, const Candidate& candidate, const Camera& camera,
+                                      const BakeQuality& quality, const WorkBudget& budget) {
   Box bounds;
   for (const std::uint32_t object : candidate.objects) bounds.extend(scene.objects[object].bounds);
   const ImpostorSketch sketch = sketch_impostor(bounds, candidate.view_cell, camera, quality);
   if (!std::isfinite(sketch.layers) || !plan_impostor(bounds, candidate.view_cell, camera, quality).possible) return std::nullopt;
-  const Impostor impostor = bake_layered(scene, {candidate.objects, candidate.view_cell}, camera, quality, budget);
+  const Impostor impostor = bake_layered(scene, textures, {candidate.objects, candidate.view_cell}, camera, quality, budget);
   if (impostor.quads.empty() || impostor.texels.empty()) return std::nullopt;
   return SizeSample{size_input(scene, candidate.objects, bounds, candidate.view_cell, sketch),
                     {static_cast<double>(impostor.texels.size()), static_cast<double>(impostor.quads.size())}};
@@ -47,9 +48,10 @@ std::optional<SizeSample> bake_sample(const Scene& scene, const Candidate& candi
 SizeModel fit_size_model(const Scene& scene, const std::vector<Candidate>& candidates, const Camera& camera, const BakeQuality& quality,
                          std::uint32_t count, std::uint64_t seed, int threads, const WorkBudget& budget) {
   const auto chosen = spread(candidates, count, seed);
+  const TexturePyramids textures(scene);
   std::vector<std::optional<SizeSample>> baked(chosen.size());
   parallel_for(chosen.size(), threads, budget,
-               [&](std::size_t i) { baked[i] = bake_sample(scene, candidates[chosen[i]], camera, quality, budget); });
+               [&](std::size_t i) { baked[i] = bake_sample(scene, textures, candidates[chosen[i]], camera, quality, budget); });
   std::vector<SizeSample> samples;
   for (const auto& sample : baked)
     if (sample) samples.push_back(*sample);

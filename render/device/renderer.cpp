@@ -51,13 +51,13 @@ struct Renderer::State {
   /// The part of the list that may be in the frustum.
   const DrawList& culled(const View& view, const DrawList& list) {
     check_ids(list);
-    const auto planes = frustum_planes(view, camera);
+    const Frustum frustum = frustum_of(view, camera);
     visible.objects.clear();
     visible.impostors.clear();
     for (const std::uint32_t id : list.objects)
-      if (may_intersect(planes, scene.objects[id].bounds)) visible.objects.push_back(id);
+      if (may_intersect(frustum, scene.objects[id].bounds)) visible.objects.push_back(id);
     for (const std::uint32_t id : list.impostors)
-      if (const Box& box = impostors->bounds(id); !box.empty() && may_intersect(planes, box)) visible.impostors.push_back(id);
+      if (const Box& box = impostors->bounds(id); !box.empty() && may_intersect(frustum, box)) visible.impostors.push_back(id);
     return visible;
   }
 

@@ -58,16 +58,32 @@ Mat4 clip_from_eye(const Camera& camera) {
   return result;
 }
 
-std::array<Plane, 5> frustum_planes(const View& view, const Camera& camera) {
+Frustum frustum_of(const View& view, const Camera& camera) {
   const Mat3 frame = world_from_eye_rotation(view.direction);
-  const auto through_eye = [&](const Vec3& outward) {
-    const Vec3 normal = glm::normalize(outward);
-    return Plane{normal, glm::dot(normal, view.position)};
+  const Vec3 x_border = camera.tan_half_x() * frame[0], y_border = camera.tan_half_y() * frame[1];
+  const std::array<Vec3, 4> edges = {
+      glm::normalize(view.direction + x_border + y_border), glm::normalize(view.direction + x_border - y_border),
+      glm::normalize(view.direction - x_border + y_border), glm::normalize(view.direction - x_border - y_border)};
+  Frustum frustum;
+  const auto add = [&](const Vec3& outward) {
+    const double length = glm::length(outward);
+    if (!(length > 1e-9)) return;
+    const Vec3 normal = outward / length;
+    for (const Vec3& edge : edges)
+      if (glm::dot(normal, edge) > 1e-12) return;
+    frustum.planes[frustum.count++] = {normal, glm::dot(normal, view.position)};
   };
-  const Vec3 x_border = camera.tan_half_x() * view.direction;
-  const Vec3 y_border = camera.tan_half_y() * view.direction;
-  return {through_eye(frame[0] - x_border), through_eye(-frame[0] - x_border), through_eye(frame[1] - y_border),
-          through_eye(-frame[1] - y_border), through_eye(-view.direction)};
+  for (const double sign : {1.0, -1.0}) {
+    add(sign * frame[0] - camera.tan_half_x() * view.direction);
+    add(sign * frame[1] - camera.tan_half_y() * view.direction);
+  }
+  add(-view.direction);
+  for (const Vec3& axis : {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1)})
+    for (const double sign : {1.0, -1.0}) {
+      add(sign * axis);
+      for (const Vec3& edge : edges) add(sign * glm::cross(axis, edge));
+    }
+  return frustum;
 }
 
 }  // namespace standin

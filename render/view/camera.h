@@ -4,6 +4,8 @@
 // (thesis 5.3): right = normalise(direction x up). At the poles, where that vanishes, right is the limit reached along -z of the world.
 #pragma once
 
+#include <cmath>
+
 #include "render/base/geometry.h"
 
 namespace standin {
@@ -42,13 +44,22 @@ struct Plane {
   double offset = 0.0;
 };
 
-/// The four side planes of a single view's frustum and the plane through the eye (normals outward).
-[[nodiscard]] std::array<Plane, 5> frustum_planes(const View& view, const Camera& camera);
+/// A view's frustum for boxes: every plane through the eye, of those that could separate it from an axis-aligned box, that has the frustum
+/// on its inner side. These are its five own planes (four sides, and the one through the eye), the box's axes, and the planes that hold an
+/// edge of each (separating axis theorem); with all of them the test is exact, with the five alone boxes beside an edge pass that no point
+/// of the frustum is in.
+struct Frustum {
+  std::array<Plane, 35> planes;  // 5 + 2 * 3 + 2 * 3 * 4 at most
+  std::size_t count = 0;
+};
+[[nodiscard]] Frustum frustum_of(const View& view, const Camera& camera);
 
-/// False only where the box lies wholly outside one plane (conservative).
-[[nodiscard]] inline bool may_intersect(const std::array<Plane, 5>& planes, const Box& box) {
-  for (const auto& plane : planes)
-    if (-box.support(-plane.normal) > plane.offset) return false;
+/// False only where the box lies outside (by more than rounding).
+[[nodiscard]] inline bool may_intersect(const Frustum& frustum, const Box& box) {
+  for (std::size_t i = 0; i < frustum.count; ++i) {
+    const Plane& plane = frustum.planes[i];
+    if (-box.support(-plane.normal) > plane.offset + 1e-12 * (1.0 + std::abs(plane.offset))) return false;
+  }
   return true;
 }
 

@@ -6,8 +6,10 @@
 #include <optional>
 
 #include "placement/candidates/selection_input.h"
+#include "render/base/error.h"
 #include "render/base/parallel.h"
 #include "render/impostor/atlas.h"
+#include "render/impostor/texture_pyramid.h"
 
 namespace standin {
 namespace {
@@ -27,18 +29,18 @@ std::uint32_t pages_for(double bytes) {
 // Keeps what was baked across rounds; candidate ids stay the same throughout.
 class Baker {
  public:
-  Baker(const World& world, const std::vector<Candidate>& candidates) : world_(world), candidates_(candidates), sizes_(candidates.size()) {}
+  Baker(const World& world, const std::vector<Candidate>& candidates)
+      : world_(world), textures_(world.scene), candidates_(candidates), sizes_(candidates.size()) {}
 
   // Bakes those of `chosen` that are not baked yet. Returns how many.
   std::uint32_t bake(const std::vector<std::uint32_t>& chosen, const WorkBudget& budget) {
     std::vector<std::uint32_t> missing;
     for (const auto id : chosen)
       if (!baked_.contains(id)) missing.push_back(id);
-    std::vector<Impostor> fresh(missing.size());
+    std::vector<std::optional<Impostor>> fresh(missing.size());
     std::atomic<std::size_t> done{0};
     parallel_for(missing.size(), world_.threads, budget, [&](std::size_t i) {
-      const Candidate& candidate = candidates_[missing[i]];
-      fresh[i] = bake_layered(world_.scene, {candidate.objects, candidate.view_cell}, world_.camera, world_.quality, budget);
+      fresh[i] = try_bake(candidates_[missing[i]], budget);
       budget.report("bake", static_cast<double>(++done) / static_cast<double>(missing.size()));
     });
     for (std::size_t i = 0; i < missing.size(); ++i) keep(missing[i], std::move(fresh[i]));
@@ -57,12 +59,26 @@ class Baker {
   [[nodiscard]] const std::vector<std::optional<BakedSize>>& sizes() const { return sizes_; }
 
  private:
-  void keep(std::uint32_t id, Impostor impostor) {
-    sizes_[id] = BakedSize{std::max(1.0, static_cast<double>(texture_bytes(impostor))), impostor_cost(impostor)};
-    baked_.emplace(id, std::move(impostor));
+  // Nothing where the sketch was too hopeful: the recorded vertices need more layers than allowed.
+  [[nodiscard]] std::optional<Impostor> try_bake(const Candidate& candidate, const WorkBudget& budget) const {
+    try {
+      return bake_layered(world_.scene, textures_, {candidate.objects, candidate.view_cell}, world_.camera, world_.quality, budget);
+    } catch (const Failure& failure) {
+      if (failure.word() != ErrorWord::kImpostorImpossible) throw;
+      return std::nullopt;
+    }
+  }
+
+  // What cannot be baked costs more than anything: it gains nowhere, and the next round lets go of it.
+  void keep(std::uint32_t id, std::optional<Impostor> impostor) {
+    constexpr BakedSize kImpossible{1e15, {1e15, 1e15, 1.0}};
+    sizes_[id] = kImpossible;
+    if (impostor) sizes_[id] = BakedSize{std::max(1.0, static_cast<double>(texture_bytes(*impostor))), impostor_cost(*impostor)};
+    baked_.emplace(id, impostor ? std::move(*impostor) : Impostor{});
   }
 
   const World& world_;
+  const TexturePyramids textures_;
   const std::vector<Candidate>& candidates_;
   std::vector<std::optional<BakedSize>> sizes_;
   std::map<std::uint32_t, Impostor> baked_;

@@ -69,25 +69,6 @@ std::vector<DirectionInterval> all_intervals(int level) {
   return intervals;
 }
 
-// Whether a view's frustum and a box meet, exactly: by the separating axis theorem over the frustum's planes, the box's axes and the
-// products of their edges. The five planes alone let boxes pass that no point of the frustum is in.
-bool sees_box(const View& view, const Camera& camera, const Box& box) {
-  if (!may_intersect(frustum_planes(view, camera), box)) return false;
-  const Mat3 world_from_eye = world_from_eye_rotation(view.direction);
-  std::vector<Vec3> edges, axes = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-  for (const double x : {-1.0, 1.0})
-    for (const double y : {-1.0, 1.0}) edges.push_back(world_from_eye * Vec3(x * camera.tan_half_x(), y * camera.tan_half_y(), -1.0));
-  for (int axis = 0; axis < 3; ++axis)
-    for (const Vec3& edge : edges) axes.push_back(glm::cross(axes[static_cast<std::size_t>(axis)], edge));
-  for (const Vec3& axis : axes)
-    for (const double sign : {-1.0, 1.0}) {
-      const Vec3 normal = sign * axis;
-      const bool frustum_behind = std::all_of(edges.begin(), edges.end(), [&](const Vec3& edge) { return glm::dot(normal, edge) <= 0.0; });
-      if (frustum_behind && -box.support(-normal) > glm::dot(normal, view.position)) return false;
-    }
-  return true;
-}
-
 TEST(Subdivision, IsSlowOnlyWhenLookingAtTheForest) {
   const World world = forest_world();
   const TimeModel model = test::triangle_time_model();  // the forest takes 10.8 ms
@@ -181,8 +162,7 @@ TEST(Subdivision, BoundsHoldForEverySampledView) {
       const Cpv& cpv = regions.at({keys[*cell], interval_of(view.direction, 2)});
       Cost frame;
       for (std::uint32_t object = 0; object < world.scene.objects.size(); ++object)
-        if (sees_box(view, world.camera, world.scene.objects[object].bounds))
-          frame += model.cost(features.estimate(object, PreparedView(view, world.camera)));
+        frame += model.cost(features.estimate(object, PreparedView(view, world.camera)));
       frame += model.cost(frame_features());
       const double predicted_ms = model.predicted_ms(frame);
       ASSERT_LE(predicted_ms, cpv.predicted_ms * (1 + 1e-12)) << "view " << i;

@@ -96,7 +96,7 @@ TEST(Frustum, PlanesAgreeWithTheProjection) {
     const Vec3 point = view.position + rng.uniform(0.1, 10) * random_direction(rng);
     const Vec4 clip = clip_from_eye(camera) * eye_from_world(view) * Vec4(point, 1.0);
     const bool projected = clip.w > 0 && std::abs(clip.x) <= clip.w && std::abs(clip.y) <= clip.w;
-    EXPECT_EQ(may_intersect(frustum_planes(view, camera), Box{point, point}), projected);
+    EXPECT_EQ(may_intersect(frustum_of(view, camera), Box{point, point}), projected);
     inside_count += projected ? 1 : 0;
   }
   EXPECT_GT(inside_count, 500);

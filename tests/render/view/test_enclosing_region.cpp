@@ -133,10 +133,10 @@ TEST(EnclosingRegion, IsHardlyWiderThanTheUnionOfFrusta) {
   const DirectionInterval interval{Face::kPosZ, 3, 5, 2};
   const Camera camera;
   const DirectionCone cone = enclosing_cone(interval, camera);
-  std::vector<std::array<Plane, 5>> frusta;
+  std::vector<Frustum> frusta;
   const auto [a0, a1, b0, b1] = interval.angles_rad();
   for (int i = 0; i < 400; ++i)
-    frusta.push_back(frustum_planes(View{Vec3(0.0), direction_at(interval.face, pushed(rng, a0, a1), pushed(rng, b0, b1))}, camera));
+    frusta.push_back(frustum_of(View{Vec3(0.0), direction_at(interval.face, pushed(rng, a0, a1), pushed(rng, b0, b1))}, camera));
   int accepted = 0;
   int seen = 0;
   for (int i = 0; i < 20'000; ++i) {
@@ -169,7 +169,7 @@ TEST(EnclosingRegion, RejectsNoBoxThatASampledViewSees) {
       const auto [a0, a1, b0, b1] = interval.angles_rad();
       const View view{pushed_point(rng, positions), direction_at(interval.face, pushed(rng, a0, a1), pushed(rng, b0, b1))};
       const Vec3 point = pushed_point(rng, box);
-      seen = may_intersect(frustum_planes(view, camera), Box{point, point});
+      seen = may_intersect(frustum_of(view, camera), Box{point, point});
     }
     seen_boxes += seen ? 1 : 0;
     ASSERT_TRUE(kept || !seen) << "region " << k;

@@ -68,7 +68,8 @@ TEST_F(ViewSampling, HalfIsRandomAndMostOfThatInsideSlowRegions) {
 }
 
 TEST_F(ViewSampling, CornersAreCornersOfCellAndInterval) {
-  for (const View& view : by_origin().at(ViewOrigin::kCorner)) {
+  const auto views = by_origin();  // outlives the loop
+  for (const View& view : views.at(ViewOrigin::kCorner)) {
     EXPECT_TRUE(view.position.x == -4.0 || view.position.x == 0.0) << view.position.x;
     EXPECT_EQ(std::abs(view.position.y), 1.0);
     EXPECT_TRUE(view.position.z == 0.0 || std::abs(view.position.z) == 4.0) << view.position.z;
@@ -80,7 +81,8 @@ TEST_F(ViewSampling, CornersAreCornersOfCellAndInterval) {
 }
 
 TEST_F(ViewSampling, BordersAreOnTheBorderOfAnInterval) {
-  for (const View& view : by_origin().at(ViewOrigin::kBorder)) {
+  const auto views = by_origin();  // outlives the loop
+  for (const View& view : views.at(ViewOrigin::kBorder)) {
     double nearest_rad = 1.0;
     for (const auto& interval : world.placement.intervals) {
       const FaceFrame& frame = face_frame(interval.face);
@@ -121,7 +123,8 @@ TEST_F(ViewSampling, WithoutSlowRegionsViewsAreRandomOrOnPaths) {
 
 TEST_F(ViewSampling, UnsolvedRegionsAreNeverCalledTight) {
   for (auto& cpv : world.placement.cpvs) cpv.solved = cpv.cell == 0 && cpv.interval == 0;
-  for (const View& view : by_origin().at(ViewOrigin::kTight)) {
+  const auto views = by_origin();  // outlives the loop
+  for (const View& view : views.at(ViewOrigin::kTight)) {
     const auto regions = regions_of(view);
     EXPECT_NE(std::find(regions.begin(), regions.end(), 0U), regions.end());
   }
