@@ -90,6 +90,7 @@ ViewSpace to_view_space(const json& value) {
   space.kind = kind_of(value.at("kind"));
   space.why = value.at("why");
   for (const auto& box : value.at("boxes")) space.boxes.push_back(to_box(box));
+  space.volume_sum = volume_sums(space.boxes);
   const json& root = value.at("root");
   space.root_min = to_vec3(root.at("min"));
   space.root_side_m = root.at("side");

@@ -71,6 +71,17 @@ TEST(PlacementJson, RoundTripKeepsEveryValue) {
   EXPECT_EQ(read.placement.visible_sets.size(), 1U);
 }
 
+TEST(PlacementJson, PositionsOfTheViewSpaceReadCanBeSampled) {
+  const PlacementFile read = placement_from_json(placement_to_json(sample_file(), two_object_scene()), "p");
+  Rng rng(1);
+  const Vec3 position = read.view_space.sample_position(rng);
+  const Box& box = read.view_space.boxes[0];
+  for (int axis = 0; axis < 3; ++axis) {
+    EXPECT_GE(position[axis], box.min[axis]);
+    EXPECT_LE(position[axis], box.max[axis]);
+  }
+}
+
 TEST(PlacementJson, WritesTheContractsNames) {
   const json object = placement_to_json(sample_file(), two_object_scene());
   EXPECT_EQ(object["format"], "standin.placement");
