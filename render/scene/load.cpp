@@ -53,6 +53,20 @@ void place(Import& import) {
   for (Object& object : import.scene.objects) object.world_from_object = scaled * object.world_from_object;
 }
 
+// Readers name the place within the file; which file it is, is said here.
+void read(Import& import, const fs::path& file, const std::vector<std::uint8_t>& bytes) {
+  try {
+    if (is_gltf(file, bytes))
+      read_gltf(import, bytes);
+    else
+      read_by_assimp(import, file);
+  } catch (const Failure& failure) {
+    const std::string sentence = failure.what();
+    const bool named = sentence.find(file.string()) != std::string::npos;
+    throw Failure(failure.word(), named ? sentence : file.string() + ": " + sentence);
+  }
+}
+
 bool drawable(const Object& object) {
   const Vec3 extent = object.bounds.size();
   return object.area_m2 > 0.0 && std::isfinite(object.area_m2) && std::isfinite(extent.x + extent.y + extent.z);
@@ -86,11 +100,7 @@ Scene load_scene(const fs::path& file, const LoadOptions& options) {
   auto digest = std::async(std::launch::async, [&] { return sha256_hex(bytes); });
   Import import{{}, SceneFolder(file), options, {}};
   Scene& scene = import.scene;
-  if (is_gltf(file, bytes)) {
-    read_gltf(import, bytes);
-  } else {
-    read_by_assimp(import, file);
-  }
+  read(import, file, bytes);
   recentre(scene);
   place(import);
   update_derived(scene);

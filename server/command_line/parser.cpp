@@ -163,6 +163,15 @@ void add_result_commands(Grammar& grammar) {
   report.run(report_command);
 }
 
+// Words nobody understood explain more than what CLI11 misses for lack of them.
+std::string complaint(const CLI::App& app, const CLI::ParseError& error) {
+  const std::vector<std::string> words = app.remaining(true);
+  if (words.empty()) return error.what();
+  std::string sentence = "not understood:";
+  for (const auto& word : words) sentence += " " + word;
+  return sentence;
+}
+
 }  // namespace
 
 ParsedCommand parse_command_line(int argc, char** argv) {
@@ -181,7 +190,7 @@ ParsedCommand parse_command_line(int argc, char** argv) {
       return {};
     }
   } catch (const CLI::ParseError& error) {
-    throw Failure(ErrorWord::kBadUsage, error.what());
+    throw Failure(ErrorWord::kBadUsage, complaint(grammar.app, error));
   }
   if (grammar.print_schema) {
     std::cout << spec_schema().dump(2) << "\n";

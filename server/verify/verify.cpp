@@ -21,10 +21,11 @@ DrawList draw_list(const Placement& placement, const Lookup& lookup, const Scene
 }
 
 /// Fills in the views' look-ups and says what each draws.
-std::vector<FramePair> look_up(const VerifyInput& input, std::vector<VerifiedView>& views) {
+std::vector<FramePair> look_up(const VerifyInput& input, const WorkBudget& budget, std::vector<VerifiedView>& views) {
   const PlacementIndex index(input.placement);
   std::vector<FramePair> frames;
   for (auto& view : views) {
+    budget.check();
     const Lookup lookup = index.find(view.view.position, view.view.direction);
     view.cell = lookup.cell;
     view.cpv = lookup.cpv;
@@ -34,10 +35,11 @@ std::vector<FramePair> look_up(const VerifyInput& input, std::vector<VerifiedVie
   return frames;
 }
 
-void estimate(const VerifyInput& input, const ImpostorSet& shipped, const std::vector<FramePair>& frames,
+void estimate(const VerifyInput& input, const ImpostorSet& shipped, const std::vector<FramePair>& frames, const WorkBudget& budget,
               std::vector<VerifiedView>& views) {
   const FrameEstimator estimator(input.scene, input.camera, input.target.model, shipped);
   for (std::size_t i = 0; i < views.size(); ++i) {
+    budget.check();
     views[i].estimated_before_ms = estimator.predicted_ms(views[i].view, frames[i].before);
     views[i].estimated_after_ms = estimator.predicted_ms(views[i].view, frames[i].after);
   }
@@ -107,8 +109,8 @@ VerifyResult verify_placement(const VerifyInput& input, Context& context, const 
   const ImpostorSet shipped = shipped_impostors(glb, input.placement);
   VerifyResult result;
   result.views = sample_views(input.placement, input.view_space, options.views, options.seed);
-  const std::vector<FramePair> frames = look_up(input, result.views);
-  estimate(input, shipped, frames, result.views);
+  const std::vector<FramePair> frames = look_up(input, budget, result.views);
+  estimate(input, shipped, frames, budget, result.views);
 
   Renderer renderer(context, input.scene, input.camera);
   renderer.upload(shipped);
