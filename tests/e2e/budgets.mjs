@@ -1,0 +1,51 @@
+// Budgets no impostors can meet, and budgets that need none.
+import assert from "node:assert/strict";
+import { join } from "node:path";
+import test from "node:test";
+import { city, expectExit, placed, resultOf, scratch, smallJob } from "./standin.mjs";
+
+const folder = scratch();
+const { survey } = resultOf(placed).metrics;
+
+function place(code, budget_ms, ...more) {
+  const out = join(folder, budget_ms.toFixed(3));
+  const run = expectExit(code, "place", city, ...smallJob, "--budget-ms", budget_ms.toFixed(3), "-o", out, ...more);
+  return { ...run, ...resultOf(out), folder: out };
+}
+
+function expectExplained({ placement, metrics }) {
+  assert.equal(metrics.unsolved.length, metrics.cpv.unsolved);
+  for (const entry of metrics.unsolved) {
+    const cpv = placement.cpvs[entry.cpv];
+    assert.equal(cpv.solved, false);
+    assert.equal(entry.bound_after_ms, cpv.bound_after_ms);
+    assert.ok(entry.residual_ms > 0, `cpv ${entry.cpv}: residual ${entry.residual_ms}`);
+    assert.ok(entry.lowest_budget_ms > placement.budget_ms, `cpv ${entry.cpv}: lowest budget ${entry.lowest_budget_ms}`);
+    assert.ok(entry.blocking.length > 0 && entry.blocking.every((object) => placement.scene.objects[object.object].name === object.name));
+  }
+}
+
+test("a budget just below what is reachable: the rest is solved, exit code 1", () => {
+  const result = place(1, 0.95 * survey.reachable_all_ms);
+  const { metrics, out } = result;
+  assert.ok(metrics.cpv.unsolved > 0 && metrics.cpv.solved > metrics.cpv.unsolved, JSON.stringify(metrics.cpv));
+  expectExplained(result);
+  assert.ok(Math.max(...metrics.unsolved.map((entry) => entry.lowest_budget_ms)) <= survey.reachable_all_ms * (1 + 1e-9),
+            "what survey called reachable for all");
+  assert.match(out, /^unsolved: cpv \d+ \(cell .*\): .* ms, lowest budget .* ms, because of \S+/m);
+  const report = JSON.parse(expectExit(1, "check", result.folder, "--json").out);
+  assert.equal(report.violations, 0, "unsolved regions are no violation, but no success either");
+});
+
+test("half of what is reachable: everything is written, exit code 1", () => {
+  const result = place(1, 0.5 * survey.reachable_all_ms, "--refine-levels", "0", "--leaf-m", "46");
+  assert.ok(result.metrics.cpv.unsolved > 0);
+  expectExplained(result);
+});
+
+test("above the highest bound: no problem views, nothing to place, and it says so", () => {
+  const { placement, metrics } = place(0, 1.001 * survey.worst_bound_ms);
+  assert.deepEqual([placement.cpvs.length, placement.impostors.length, metrics.memory.total_bytes], [0, 0, 0]);
+  assert.ok(metrics.left_out.some((entry) => /candidates/.test(entry.stage) && /no problem views/.test(entry.reason)),
+            JSON.stringify(metrics.left_out));
+});

@@ -1,0 +1,103 @@
+// What `place` wrote keeps the contracts: schemas, the Khronos validator, the fields of metrics.json, a page that needs no network.
+import assert from "node:assert/strict";
+import { spawnSync } from "node:child_process";
+import { readFileSync } from "node:fs";
+import { createRequire } from "node:module";
+import { join } from "node:path";
+import test from "node:test";
+import { at, expectExit, placed, readJson, resultOf, source } from "./standin.mjs";
+
+const require = createRequire(import.meta.url);
+const { placement, metrics } = resultOf(placed);
+
+const kMetrics = `
+  scene.objects scene.triangles budget_ms cpv.count cpv.solved cpv.unsolved candidates.generated candidates.pruned impostors.count
+  memory.texture_bytes memory.geometry_bytes memory.total_bytes memory.atlas_padding_bytes bound.memory_lower_bound_bytes
+  survey.worst_frame_ms survey.p99_frame_ms survey.worst_bound_ms survey.reachable_all_ms survey.reachable_p99_ms survey.reachable_p90_ms
+  verify.views verify.over_budget_estimated image.views image.gap_pixels image.max_parallax_ratio image.mean_error
+  stages_s.load stages_s.visibility stages_s.view_space stages_s.candidates stages_s.select stages_s.bake stages_s.verify
+  peak_rss_bytes`.trim().split(/\s+/);
+
+function* leaves(value, path = "") {
+  if (value !== null && typeof value === "object")
+    for (const [key, inner] of Object.entries(value)) yield* leaves(inner, path ? `${path}.${key}` : key);
+  else yield [path, value];
+}
+
+test("placement.json is what configs/placement.schema.json says", () => {
+  const Ajv = require("ajv/dist/2020.js").default;
+  const ajv = new Ajv({ strict: true, allErrors: true });
+  ajv.addSchema(readJson(join(source, "configs/job.schema.json")), "job.schema.json");
+  const validate = ajv.compile(readJson(join(source, "configs/placement.schema.json")));
+  assert.ok(validate(placement), JSON.stringify(validate.errors?.slice(0, 5), null, 1));
+  for (const [name, spoil] of Object.entries({
+    "a missing budget": (p) => delete p.budget_ms,
+    "a face of its own": (p) => (p.intervals[0].face = "up"),
+    "an unknown technique": (p) => (p.impostors[0].technique = "magic"),
+    "a path in the spec": (p) => (p.spec.texture_folder = "/home"),
+  })) {
+    const spoilt = structuredClone(placement);
+    spoil(spoilt);
+    assert.ok(!validate(spoilt), `the schema accepts ${name}`);
+  }
+});
+
+test("cells, intervals and impostors are referred to by index, and cover what they must", () => {
+  placement.impostors.forEach((impostor, id) => assert.equal(impostor.id, id));
+  for (const cpv of placement.cpvs) {
+    assert.ok(cpv.bound_before_ms > placement.budget_ms, "a CPV is over budget without impostors");
+    assert.equal(cpv.solved, cpv.bound_after_ms <= placement.budget_ms);
+    const objects = cpv.impostors.flatMap((id) => placement.impostors[id].objects);
+    assert.equal(new Set(objects).size, objects.length, "impostors of a CPV stand for disjoint objects");
+  }
+  const used = new Set(placement.cpvs.flatMap((cpv) => cpv.impostors));
+  assert.equal(used.size, placement.impostors.length, "every impostor is drawn by some CPV");
+});
+
+test("check agrees", () => {
+  const report = JSON.parse(expectExit(0, "check", placed, "--json").out);
+  assert.equal(report.violations, 0);
+  assert.equal(report.solved, metrics.cpv.count);
+  assert.equal(report.texture_bytes, metrics.memory.texture_bytes);
+});
+
+test("the Khronos validator finds no error in impostors.glb, and every impostor has its node", () => {
+  const file = join(placed, "impostors.glb");
+  const validator = spawnSync(process.execPath, [join(source, "tests/e2e/validate_glb.mjs"), file], { encoding: "utf8" });
+  assert.equal(validator.status, 0, validator.stdout + validator.stderr);
+  const bytes = new Uint8Array(readFileSync(file));
+  const json = JSON.parse(new TextDecoder().decode(bytes.subarray(20, 20 + new DataView(bytes.buffer).getUint32(12, true))));
+  const names = new Set(json.nodes.map((node) => node.name));
+  for (const impostor of placement.impostors) assert.ok(names.has(impostor.gltf_node), impostor.gltf_node);
+  for (const material of json.materials) assert.equal(material.alphaMode, "MASK");
+});
+
+test("metrics.json has its fields, all numbers are finite, and sums add up", () => {
+  for (const path of kMetrics) assert.equal(typeof at(metrics, path), "number", path);
+  assert.ok("gap" in metrics.bound || "gap_estimated" in metrics.bound);
+  for (const path of ["verify.over_budget_measured", "verify.frame_ms_before.p50", "verify.frame_ms_before.p99", "verify.frame_ms_before.max",
+                      "verify.frame_ms_after.p50", "verify.frame_ms_after.p99", "verify.frame_ms_after.max"])
+    assert.notEqual(at(metrics, path), undefined, path);
+  assert.ok(Array.isArray(metrics.left_out));
+  // JSON has no NaN; a writer that met one leaves a null, so nulls may stand only for what was not measured, or for no CPV.
+  for (const [path, value] of leaves(metrics))
+    if (value === null) assert.match(path, /^verify\.(over_budget_measured|worst_over_budget|frame_ms_|frames\.)/, `${path} is null`);
+  assert.equal(metrics.memory.texture_bytes + metrics.memory.geometry_bytes, metrics.memory.total_bytes);
+  assert.equal(metrics.cpv.solved + metrics.cpv.unsolved, metrics.cpv.count);
+  assert.ok(metrics.bound.memory_lower_bound_bytes <= metrics.memory.texture_bytes);
+  assert.equal(placement.impostors.reduce((sum, impostor) => sum + impostor.texture_bytes, 0), metrics.memory.texture_bytes);
+});
+
+test("images keep their guarantee", () => {
+  assert.equal(metrics.image.gap_pixels, 0);
+  assert.ok(metrics.image.max_parallax_ratio <= 1);
+  assert.equal(metrics.verify.over_budget_estimated, 0);
+});
+
+test("report.html loads nothing from elsewhere", () => {
+  const page = readFileSync(join(placed, "report.html"), "utf8");
+  const markup = page.replace(/(<(?:script|style)\b[^>]*>)[^]*?(<\/(?:script|style)>)/g, "$1$2");
+  const sources = [...markup.matchAll(/<[a-z]+\b[^>]*?\s(?:src|href)\s*=\s*["']?([^"'\s>]*)/gi)].map((match) => match[1]);
+  assert.deepEqual(sources.filter((address) => !/^(data:|#)/.test(address)), []);
+  assert.doesNotMatch(page, /@import|url\(\s*["']?https?:/i);
+});
