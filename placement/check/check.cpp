@@ -4,10 +4,12 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <optional>
 #include <set>
 
 #include "placement/view_space/cell_boxes.h"
 #include "placement/view_space/region_bound.h"
+#include "render/base/error.h"
 #include "render/base/parallel.h"
 
 namespace standin {
@@ -35,6 +37,16 @@ class Checker {
     everything_.resize(input.scene.objects.size());
     std::iota(everything_.begin(), everything_.end(), 0U);
     for (std::uint32_t p = 0; p < placement.cpvs.size(); ++p) cpvs_of_cell_[placement.cpvs[p].cell].push_back(p);
+    for (const auto& impostor : placement.impostors) impostor_costs_.push_back(impostor_cost_bound(impostor));
+  }
+
+  [[nodiscard]] std::vector<Finding> check_impostors() const {
+    std::vector<Finding> findings;
+    for (std::uint32_t id = 0; id < impostor_costs_.size(); ++id)
+      if (!impostor_costs_[id])
+        findings.push_back(
+            {Violation::kLayerInViewCell, id, "impostor " + std::to_string(id) + ": its view cell reaches one of its layers"});
+    return findings;
   }
 
   // All findings of one cell: its box, its CPVs, and the regions it should list but does not.
@@ -67,19 +79,23 @@ class Checker {
     const auto report = [&](Violation violation, const std::string& what) { findings.push_back({violation, p, place + ": " + what}); };
     const RegionBound bound = estimator_.region_bound(costs, placement_.intervals[cpv.interval]);
     const double before_ms = input_.model.bound_ms(bound.predicted_ms);
-    const double after_ms = input_.model.bound_ms(after(bound, cpv));
     if (!agrees(before_ms, cpv.bound_before_ms))
       report(Violation::kBoundBefore, "bound_before_ms = " + milliseconds(cpv.bound_before_ms) + ", recomputed " + milliseconds(before_ms));
+    if (has_bound(cpv)) check_after(cpv, input_.model.bound_ms(after(bound, cpv)), report);
+    for (const auto id : cpv.impostors)
+      if (!encloses(placement_.impostors[id].view_cell, cell.box))
+        report(Violation::kNotEnclosed, "its cell is not inside the view cell of impostor " + std::to_string(id));
+    if (!disjoint(cpv)) report(Violation::kNotDisjoint, "two of its impostors stand for the same object");
+  }
+
+  template <class Report>
+  void check_after(const PlacementCpv& cpv, double after_ms, const Report& report) const {
     if (!agrees(after_ms, cpv.bound_after_ms))
       report(Violation::kBoundAfter, "bound_after_ms = " + milliseconds(cpv.bound_after_ms) + ", recomputed " + milliseconds(after_ms));
     const double slack_ms = kRelativeTolerance * input_.budget_ms;
     if (cpv.solved && after_ms > input_.budget_ms + slack_ms)
       report(Violation::kOverBudget, "solved, but its bound " + milliseconds(after_ms) + " violates <= " + milliseconds(input_.budget_ms));
     if (!cpv.solved && after_ms <= input_.budget_ms - slack_ms) report(Violation::kNotSolved, "unsolved, but its bound meets the budget");
-    for (const auto id : cpv.impostors)
-      if (!encloses(placement_.impostors[id].view_cell, cell.box))
-        report(Violation::kNotEnclosed, "its cell is not inside the view cell of impostor " + std::to_string(id));
-    if (!disjoint(cpv)) report(Violation::kNotDisjoint, "two of its impostors stand for the same object");
   }
 
   [[nodiscard]] bool disjoint(const PlacementCpv& cpv) const {
@@ -97,20 +113,31 @@ class Checker {
           cpv.impostors, [&](std::uint32_t id) { return std::ranges::binary_search(placement_.impostors[id].objects, term.object); });
       if (!replaced) sum += term.predicted_ms;
     }
-    for (const auto id : cpv.impostors) sum += impostor_ms(placement_.impostors[id], bound.pixels_capped);
+    for (const auto id : cpv.impostors) {
+      const Cost& cost = *impostor_costs_[id];
+      sum += bound.pixels_capped ? cost.fixed_ms : cost.fixed_ms + cost.pixel_ms;
+    }
     return cpv.impostors.empty() ? sum : sum + page_switches_ms_;
   }
 
-  [[nodiscard]] double impostor_ms(const PlacementImpostor& impostor, bool pixels_capped) const {
+  // Nothing where the view cell reaches a layer: seen from there, its pixels have no bound.
+  [[nodiscard]] std::optional<Cost> impostor_cost_bound(const PlacementImpostor& impostor) const {
     Impostor geometry;
     geometry.view_cell = impostor.view_cell;
     geometry.frame = impostor.frame;
     geometry.layers = impostor.layers;
-    ImpostorCost known = impostor_cost(geometry);
-    known.quads = impostor.quads;
-    known.texels = static_cast<double>(impostor.texels);
-    const Cost cost = input_.model.cost(impostor_features_bound(known, input_.camera));
-    return pixels_capped ? cost.fixed_ms : cost.fixed_ms + cost.pixel_ms;
+    try {
+      ImpostorCost known = impostor_cost(geometry);
+      known.quads = impostor.quads;
+      known.texels = static_cast<double>(impostor.texels);
+      return input_.model.cost(impostor_features_bound(known, input_.camera));
+    } catch (const Failure&) {
+      return std::nullopt;
+    }
+  }
+
+  [[nodiscard]] bool has_bound(const PlacementCpv& cpv) const {
+    return std::ranges::all_of(cpv.impostors, [&](std::uint32_t id) { return impostor_costs_[id].has_value(); });
   }
 
   // Depth first over the direction quadtree; a node within the budget vouches for all below it.
@@ -142,6 +169,7 @@ class Checker {
   double page_switches_ms_;
   std::vector<std::uint32_t> everything_;
   std::map<std::uint32_t, std::vector<std::uint32_t>> cpvs_of_cell_;
+  std::vector<std::optional<Cost>> impostor_costs_;
 };
 
 }  // namespace
@@ -163,9 +191,11 @@ const char* violation_name(Violation violation) {
     case Violation::kNotEnclosed:
       return "not_enclosed";
     case Violation::kMissingRegion:
+      return "missing_region";
+    case Violation::kLayerInViewCell:
       break;
   }
-  return "missing_region";
+  return "layer_in_view_cell";
 }
 
 CheckReport check_placement(const CheckInput& input, const Placement& placement, int threads, const WorkBudget& budget) {
@@ -185,6 +215,7 @@ CheckReport check_placement(const CheckInput& input, const Placement& placement,
     report.geometry_bytes += impostor.geometry_bytes;
   }
   report.regions = std::accumulate(regions.begin(), regions.end(), std::uint64_t{0}) + report.cpvs;
+  report.findings = checker.check_impostors();
   for (auto& of_cell : findings) report.findings.insert(report.findings.end(), of_cell.begin(), of_cell.end());
   return report;
 }

@@ -16,20 +16,21 @@
 namespace standin {
 
 enum class Violation {
-  kCellBox,        // a cell's box is not the view space's part inside its cube
-  kBoundBefore,    // bound_before_ms is not the recomputed bound
-  kBoundAfter,     // bound_after_ms is not the recomputed bound
-  kOverBudget,     // a CPV called solved is over budget
-  kNotSolved,      // a CPV within the budget is called unsolved
-  kNotDisjoint,    // two impostors of a CPV stand for the same object
-  kNotEnclosed,    // a CPV's cell is not inside its impostor's view cell
-  kMissingRegion,  // a leaf region over budget that no CPV lists
+  kCellBox,          // a cell's box is not the view space's part inside its cube
+  kBoundBefore,      // bound_before_ms is not the recomputed bound
+  kBoundAfter,       // bound_after_ms is not the recomputed bound
+  kOverBudget,       // a CPV called solved is over budget
+  kNotSolved,        // a CPV within the budget is called unsolved
+  kNotDisjoint,      // two impostors of a CPV stand for the same object
+  kNotEnclosed,      // a CPV's cell is not inside its impostor's view cell
+  kMissingRegion,    // a leaf region over budget that no CPV lists
+  kLayerInViewCell,  // an eye in an impostor's view cell may reach one of its layers: it has no bound
 };
 [[nodiscard]] const char* violation_name(Violation violation);
 
 struct Finding {
   Violation violation = Violation::kCellBox;
-  std::uint32_t index = 0;  // CPV, or cell for kCellBox and kMissingRegion
+  std::uint32_t index = 0;  // CPV; cell for kCellBox and kMissingRegion; impostor for kLayerInViewCell
   std::string sentence;     // values, place and the violated constraint
 };
 
@@ -51,7 +52,7 @@ struct CheckReport {
   std::uint64_t texture_bytes = 0;
   std::uint64_t geometry_bytes = 0;
   double worst_bound_after_ms = 0.0;  // over all CPVs
-  std::vector<Finding> findings;      // by CPV, then cell; empty: the placement keeps its promises
+  std::vector<Finding> findings;      // by impostor, then cell and its CPVs; empty: the placement keeps its promises
 };
 
 [[nodiscard]] CheckReport check_placement(const CheckInput& input, const Placement& placement, int threads, const WorkBudget& budget);

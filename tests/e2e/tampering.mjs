@@ -30,6 +30,10 @@ const kTamperings = {
     violation: "not_enclosed",
     tamper: (p) => (p.impostors[p.cpvs[helped].impostors[0]].view_cell = { kind: "box", min: [0, 0, 0], max: [1, 1, 1] }),
   },
+  "a view cell that reaches its layers": {
+    violation: "layer_in_view_cell",
+    tamper: (p) => (p.impostors[0].view_cell = { kind: "box", min: [-500, -500, -500], max: [500, 500, 500] }),
+  },
   "impostors that overlap": {
     violation: "not_disjoint",
     tamper: (p) => {
@@ -38,7 +42,7 @@ const kTamperings = {
       p.cpvs[helped].impostors.push(p.impostors.length - 1);
     },
   },
-  "a higher budget": { violation: "missing_region", tamper: (p) => (p.spec.budget_ms *= 0.9) },
+  "a lower budget": { violation: "missing_region", tamper: (p) => (p.spec.budget_ms *= 0.9) },
 };
 
 for (const [name, { violation, tamper }] of Object.entries(kTamperings)) {
@@ -46,7 +50,7 @@ for (const [name, { violation, tamper }] of Object.entries(kTamperings)) {
     const { findings } = JSON.parse(checkAfter(name, tamper).out);
     const words = new Set(findings.map((finding) => finding.violation));
     assert.ok(words.has(violation), `${violation} is not among ${[...words]}`);
-    for (const finding of findings) assert.match(finding.sentence, /^(cpv|cell) \d+: /);
+    for (const finding of findings) assert.match(finding.sentence, /^(cpv|cell|impostor) \d+: /);
   });
 }
 
