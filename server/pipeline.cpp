@@ -1,6 +1,7 @@
 #include "server/pipeline.h"
 
 #include <cmath>
+#include <cstdio>
 #include <numeric>
 #include <optional>
 
@@ -88,10 +89,24 @@ Surveyed survey_scene(const JobFiles& files, const JobSpec& spec, StageClock& cl
   return job;
 }
 
+std::string milliseconds(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.2f ms", value);
+  return text;
+}
+
+// A bound stands above the views it holds for, so a certified budget may lie above the worst view that was sampled: say which case this is.
 std::string verdict(const Surveyed& job) {
-  if (job.reach.all_ms < kHelpfulShare * job.survey.worst_frame_ms)
-    return "impostors can help: every view can be brought under reachable_all_ms";
-  std::string sentence = "impostors cannot help the slowest views on this target: what remains there is near or light geometry, above all";
+  const double worst_ms = job.survey.worst_frame_ms;
+  std::string sentence;
+  if (job.reach.all_ms < kHelpfulShare * worst_ms)
+    return "impostors can help: every view can be certified to stay within " + milliseconds(job.reach.all_ms);
+  if (job.reach.all_ms < kHelpfulShare * job.reach.worst_bound_ms)
+    sentence = "impostors lower the highest bound from " + milliseconds(job.reach.worst_bound_ms) + " to " +
+               milliseconds(job.reach.all_ms) + ", but no budget below the worst sampled view (" + milliseconds(worst_ms) +
+               ") can be certified for all views; what blocks is above all";
+  else
+    sentence = "impostors cannot help the slowest views on this target: what remains there is near or light geometry, above all";
   for (const auto object : job.reach.blockers) sentence += " " + job.world.scene.objects[object].name + ",";
   sentence.back() = '.';
   return sentence;
