@@ -11,7 +11,7 @@
 
 namespace standin {
 
-/// A baked impostor and the CPVs it was chosen for.
+/// A baked impostor and what drawing it costs.
 struct BakedCandidate {
   const Impostor* impostor = nullptr;
   ImpostorCost cost;
