@@ -13,6 +13,7 @@
 #include "render/impostor/impostor_glb.h"
 #include "server/files/atomic_file.h"
 #include "server/files/placement_json.h"
+#include "server/job/left_out.h"
 #include "server/job/metrics.h"
 #include "server/job/reach.h"
 #include "server/job/select_and_bake.h"
@@ -30,6 +31,7 @@ using nlohmann::json;
 
 // A scene whose lowest reachable budget is no lower than this share of its worst view is one that impostors cannot help.
 constexpr double kHelpfulShare = 0.98;
+constexpr const char* kNoProblemViews = "no problem views: every region's bound is within the budget";
 
 struct Surveyed {
   World world;
@@ -46,6 +48,7 @@ CandidateOptions candidate_options_of(const JobSpec& spec, int threads) {
   options.direction_step_deg = spec.direction_step_deg;
   options.shape = spec.cell_shape == "box" ? CellShape::kBox : CellShape::kShaft;
   options.threads = threads;
+  options.every_direction = forced(spec, "candidates");
   return options;
 }
 
@@ -58,27 +61,41 @@ Subdivision problem_views(const World& world, const TimeModel& model, double pre
 }
 
 // What an impostor will weigh, from real bakes of this scene's own candidates (thesis 5.8.1).
-SizeModel fit_sizes(const Surveyed& job, const JobSpec& spec, const WorkBudget& budget) {
+SizeModel fit_sizes(const Surveyed& job, const Subdivision& whole, const JobSpec& spec, const WorkBudget& budget) {
   const World& world = job.world;
   const TimeModel& model = job.target.model;
   if (spec.size_bakes == 0) return default_size_model();
   constexpr double kProbeShare = 0.6;  // enough slow regions for typical candidates
-  const double worst_ms = problem_views(world, model, std::numeric_limits<double>::infinity(), budget).worst_predicted_ms;
-  const Subdivision probe = problem_views(world, model, kProbeShare * worst_ms, budget);
+  const Subdivision probe = problem_views(world, model, kProbeShare * whole.worst_predicted_ms, budget);
   const CandidateSet set = generate_candidates(world.scene, world.hierarchy, probe, model, default_size_model(), world.camera,
                                                world.quality, job.candidate_options, budget);
   if (set.candidates.empty()) return default_size_model();
   return fit_size_model(world.scene, set.candidates, world.camera, world.quality, spec.size_bakes, spec.seed, world.threads, budget);
 }
 
-Surveyed survey_scene(const JobFiles& files, const JobSpec& spec, StageClock& clock, const WorkBudget& budget) {
+// What impostors could do for the worst views; where no view exceeds `budget_ms`, nobody asks.
+void add_reach(Surveyed& job, const JobSpec& spec, double budget_ms, StageClock& clock, const WorkBudget& budget) {
+  const World& world = job.world;
+  const TimeModel& model = job.target.model;
+  Subdivision whole = clock.run("survey", [&] { return problem_views(world, model, std::numeric_limits<double>::infinity(), budget); });
+  if (model.bound_ms(whole.worst_predicted_ms) <= budget_ms && !forced(spec, "candidates")) {
+    clock.skip("size_model", kNoProblemViews);
+    clock.leave_out("survey", std::string(kNoProblemViews) + ", so nobody asks how low the budget could go");
+    job.reach = without_reach(model, std::move(whole));
+    return;
+  }
+  job.sizes = clock.run("size_model", [&] { return fit_sizes(job, whole, spec, budget); });
+  job.reach = clock.run("survey", [&] { return summarise_reach(world, model, whole, job.sizes, job.candidate_options, budget); });
+}
+
+// `budget_ms`: of a placement; 0: none.
+Surveyed survey_scene(const JobFiles& files, const JobSpec& spec, double budget_ms, StageClock& clock, const WorkBudget& budget) {
   Surveyed job;
   job.target = read_target(files.target);
   job.world = build_world(files.scene, spec, clock, budget);
   job.candidate_options = candidate_options_of(spec, job.world.threads);
-  job.sizes = clock.run("size_model", [&] { return fit_sizes(job, spec, budget); });
+  add_reach(job, spec, budget_ms, clock, budget);
   clock.run("survey", [&] {
-    job.reach = summarise_reach(job.world, job.target.model, job.sizes, job.candidate_options, budget);
     SurveyOptions options;
     options.views = static_cast<std::uint32_t>(spec.survey_views);
     options.seed = spec.seed;
@@ -99,6 +116,7 @@ std::string milliseconds(double value) {
 std::string verdict(const Surveyed& job) {
   const double worst_ms = job.survey.worst_frame_ms;
   std::string sentence;
+  if (!job.reach.known) return "no view needs impostors: every bound is within " + milliseconds(job.reach.worst_bound_ms);
   if (job.reach.all_ms < kHelpfulShare * worst_ms)
     return "impostors can help: every view can be certified to stay within " + milliseconds(job.reach.all_ms);
   if (job.reach.all_ms < kHelpfulShare * job.reach.worst_bound_ms)
@@ -114,6 +132,7 @@ std::string verdict(const Surveyed& job) {
 
 json survey_json(const Surveyed& job) {
   const Survey& survey = job.survey;
+  const auto if_known = [&](double reachable_ms) { return job.reach.known ? json(reachable_ms) : json(); };
   return {{"worst_frame_ms", survey.worst_frame_ms},
           {"p50_frame_ms", survey.p50_ms},
           {"p90_frame_ms", survey.p90_ms},
@@ -121,9 +140,9 @@ json survey_json(const Surveyed& job) {
           {"worst_bound_ms", job.reach.worst_bound_ms},
           {"bound_over_sampled_p50", survey.looseness_p50},
           {"bound_over_sampled_max", survey.looseness_max},
-          {"reachable_all_ms", job.reach.all_ms},
-          {"reachable_p99_ms", job.reach.p99_ms},
-          {"reachable_p90_ms", job.reach.p90_ms},
+          {"reachable_all_ms", if_known(job.reach.all_ms)},
+          {"reachable_p99_ms", if_known(job.reach.p99_ms)},
+          {"reachable_p90_ms", if_known(job.reach.p90_ms)},
           {"verdict", verdict(job)}};
 }
 
@@ -200,19 +219,31 @@ struct Placed {
   std::string glb;
 };
 
+void choose_and_bake(const Surveyed& job, const JobSpec& spec, Placed& placed, StageClock& clock, const WorkBudget& budget) {
+  const World& world = job.world;
+  const TimeModel& model = job.target.model;
+  placed.candidates = clock.run("candidates", [&] {
+    return generate_candidates(world.scene, world.hierarchy, placed.subdivision, model, job.sizes, world.camera, world.quality,
+                               job.candidate_options, budget);
+  });
+  name_directions_left_out(world, placed.candidates, spec, clock);
+  name_texturing_left_out(world.scene, spec, clock);
+  placed.selected = select_and_bake(world, placed.subdivision, placed.candidates, model, spec.budget_ms, spec, clock, budget);
+  name_culling_left_out(placed.selected.impostors, spec, clock);
+}
+
 Placed place_impostors(Surveyed& job, const JobSpec& spec, StageClock& clock, const WorkBudget& budget) {
   const World& world = job.world;
   const TimeModel& model = job.target.model;
   Placed placed;
   placed.subdivision =
       clock.run("view_space", [&] { return problem_views(world, model, model.predicted_budget_ms(spec.budget_ms), budget); });
-  if (placed.subdivision.cpvs.empty())
-    clock.leave_out("candidates, select, bake", "no problem views: every region's bound is within the budget");
-  placed.candidates = clock.run("candidates", [&] {
-    return generate_candidates(world.scene, world.hierarchy, placed.subdivision, model, job.sizes, world.camera, world.quality,
-                               job.candidate_options, budget);
-  });
-  placed.selected = select_and_bake(world, placed.subdivision, placed.candidates, model, spec.budget_ms, spec, clock, budget);
+  if (placed.subdivision.cpvs.empty() && !forced(spec, "candidates")) {
+    for (const char* stage : {"candidates", "select", "bake"}) clock.skip(stage, kNoProblemViews);
+    placed.selected.atlas_pages = 1;  // as a selection of nothing has it
+  } else {
+    choose_and_bake(job, spec, placed, clock, budget);
+  }
   clock.run("assemble", [&] {
     std::vector<std::uint32_t> kept;
     placed.placement = assemble_placement(placed.subdivision, world.view_space, placed.selected.baked, placed.selected.assigned, model,
@@ -261,7 +292,7 @@ JobOutcome run_survey(const JobFiles& files, const JobSpec& spec, const WorkBudg
   std::optional<OutputFolder> folder;
   if (!files.folder.empty()) folder.emplace(files.folder, fingerprint("survey", files, spec));
   StageClock clock(budget);
-  const Surveyed job = survey_scene(files, spec, clock, budget);
+  const Surveyed job = survey_scene(files, spec, 0.0, clock, budget);
   JobOutcome outcome;
   outcome.metrics = common_metrics(job, clock);
   outcome.metrics["causes"] = causes_json(job.world, job.reach.subdivision, job.target.model);
@@ -278,7 +309,7 @@ JobOutcome run_place(const JobFiles& files, const JobSpec& spec, const WorkBudge
   if (!(spec.budget_ms > 0.0)) throw Failure(ErrorWord::kBadUsage, "--budget-ms " + std::to_string(spec.budget_ms) + " violates: > 0");
   OutputFolder folder(files.folder, fingerprint("place", files, spec));
   StageClock clock(budget);
-  Surveyed job = survey_scene(files, spec, clock, budget);
+  Surveyed job = survey_scene(files, spec, spec.budget_ms, clock, budget);
   const Placed placed = place_impostors(job, spec, clock, budget);
   const VerifyResult verified = clock.run("verify", [&] { return verify(job, placed, spec, budget); });
 

@@ -23,6 +23,7 @@ enum class CellShape { kShaft, kBox };
 struct CandidateOptions {
   std::vector<double> apex_deg = {11.25, 22.5, 45.0, 90.0};
   double direction_step_deg = 11.25;
+  bool every_direction = false;         // for tests: also asks of each cell the directions that cannot hold it
   CellShape shape = CellShape::kShaft;  // kBox: nodes of the view space grid (thesis test 13)
   int threads = 1;
 };

@@ -92,7 +92,7 @@ void append_nested(std::span<const Held> held, double diagonal_m, std::vector<Ce
 
 }  // namespace
 
-DirectionGrid::DirectionGrid(double step_deg) {
+DirectionGrid::DirectionGrid(double step_deg, bool every_direction) : every_direction_(every_direction) {
   if (!(step_deg >= 1.0 && step_deg <= 90.0))
     throw Failure(ErrorWord::kBadUsage, "direction_step_deg = " + std::to_string(step_deg) + " violates 1 <= direction_step_deg <= 90");
   rows_ = static_cast<int>(std::lround(180.0 / step_deg)) + 1;
@@ -108,6 +108,7 @@ DirectionGrid::DirectionGrid(double step_deg) {
 }
 
 void DirectionGrid::append_near(const Vec3& unit, double angle_rad, std::vector<std::uint32_t>& directions) const {
+  if (every_direction_) angle_rad = std::numbers::pi;
   const double row_step = std::numbers::pi / (rows_ - 1);
   const double elevation = std::asin(std::clamp(unit.y, -1.0, 1.0));
   const int first_row = std::max(0, static_cast<int>(std::floor((elevation - angle_rad + 0.5 * std::numbers::pi) / row_step)));

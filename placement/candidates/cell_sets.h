@@ -15,10 +15,11 @@ namespace standin {
 
 using CellSet = std::vector<std::uint32_t>;  // ascending
 
-/// Directions (azimuth, elevation) in steps of an angle, both poles included.
+/// Directions (azimuth, elevation) in steps of an angle, both poles included. `every_direction`: append_near gives all of them, as the
+/// blind product would; what holds a cell is the same.
 class DirectionGrid {
  public:
-  explicit DirectionGrid(double step_deg);
+  explicit DirectionGrid(double step_deg, bool every_direction = false);
 
   [[nodiscard]] std::size_t size() const { return frames_.size(); }
   /// Frame of one direction: axis, right, up; apex and aperture are left open.
@@ -27,6 +28,7 @@ class DirectionGrid {
   void append_near(const Vec3& unit, double angle_rad, std::vector<std::uint32_t>& directions) const;
 
  private:
+  bool every_direction_ = false;
   int rows_ = 0;     // elevations from -90 to 90 degrees
   int columns_ = 0;  // azimuths
   std::vector<Shaft> frames_;

@@ -106,7 +106,7 @@ CandidateSet generate_candidates(const Scene& scene, const Hierarchy& hierarchy,
                                  const SizeModel& sizes, const Camera& camera, const BakeQuality& quality, const CandidateOptions& options,
                                  const WorkBudget& budget) {
   const CellIndex index(hierarchy, subdivision);
-  const DirectionGrid grid(options.direction_step_deg);
+  const DirectionGrid grid(options.direction_step_deg, options.every_direction);
   const DraftContext context{scene, hierarchy, subdivision, index, model, sizes, camera, quality, options.shape};
   std::vector<CandidateSet> of_node(hierarchy.nodes.size());
   parallel_for(of_node.size(), options.threads, budget, [&](std::size_t node) {

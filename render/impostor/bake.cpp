@@ -59,7 +59,7 @@ void cut_into_quads(const std::vector<LayerImage>& images, const BakeQuality& qu
   for (std::uint32_t layer = 0; layer < images.size(); ++layer) {
     budget.check();
     BitImage opaque = opaque_texels(images[layer]);
-    opaque -= culling.hidden_in_next(opaque);
+    if (images.size() > 1 || !quality.leave_out) opaque -= culling.hidden_in_next(opaque);
     if (images[layer].empty()) continue;
     const std::vector<Quad> quads = grow_quads(opaque, layer, settings);
     for (const Quad& quad : quads) append_block(images[layer], quad, opaque, impostor.texels);
@@ -79,7 +79,8 @@ Impostor bake_layered(const Scene& scene, const TexturePyramids& textures, const
                                                       std::to_string(request.objects.front()) + " on: " + plan.why_not);
   Impostor impostor{request.objects, request.view_cell, plan.frame, plan.layers, {}, {}};
   const auto images = record_layers(scene, textures, request.objects, impostor.frame, impostor.layers,
-                                    quality.supercover ? Coverage::kClosed : Coverage::kCentre, budget);
+                                    quality.supercover ? Coverage::kClosed : Coverage::kCentre, budget,
+                                    quality.leave_out ? Texturing::kWhereTextured : Texturing::kEverywhere);
   cut_into_quads(images, quality, budget, impostor);
   return impostor;
 }

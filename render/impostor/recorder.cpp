@@ -49,6 +49,13 @@ class TrianglePlane {
   double volume_ = 0.0;  // 0: seen edge-on
 };
 
+/// One white texel: changes no colour, and passes every mask.
+const TexturePyramid& white_texel() {
+  static const Texture texture{"white", 1, 1, {255, 255, 255, 255}};
+  static const TexturePyramid pyramid(texture, 0);
+  return pyramid;
+}
+
 bool holds_centre(const RecordedTexel& texel) {
   return texel.opaque() && texel.order < kTouchOnly;
 }
@@ -62,12 +69,13 @@ struct SurfacePoint {
 class Recorder {
  public:
   Recorder(const Scene& scene, const TexturePyramids& textures, const ImpostorFrame& frame, std::span<const Layer> layers,
-           Coverage coverage)
+           Coverage coverage, Texturing texturing)
       : scene_(scene),
         textures_(textures),
         frame_(frame),
         layers_(layers),
         closed_(coverage == Coverage::kClosed),
+        texture_all_(texturing == Texturing::kEverywhere),
         rows_(frame.width, frame.height),
         images_(layers.size(), LayerImage(frame.width, frame.height)) {}
 
@@ -85,7 +93,8 @@ class Recorder {
 
   void draw_part(const Object& object, const Part& part, const WorkBudget& budget) {
     const Mesh& mesh = scene_.meshes[part.mesh];
-    const Surface surface(scene_.materials[part.material], mesh.uvs.empty() ? nullptr : textures_.of_material(part.material));
+    const TexturePyramid* texture = mesh.uvs.empty() ? nullptr : textures_.of_material(part.material);
+    const Surface surface(scene_.materials[part.material], texture != nullptr ? texture : stand_in_texture(part.material));
     if (!surface.ever_opaque()) return;
     transform(object, mesh);
     const Mat3 m(object.world_from_object);
@@ -97,10 +106,14 @@ class Recorder {
         const std::uint32_t vertex = mesh.indices[i + k];
         triangle.corners[k] = vertices_[vertex];
         triangle.attributes.normal[k] = world_from_normal * Vec3(mesh.normals[vertex]);
-        if (surface.texture() != nullptr) triangle.attributes.uv[k] = Vec2(mesh.uvs[vertex]);
+        if (texture != nullptr) triangle.attributes.uv[k] = Vec2(mesh.uvs[vertex]);
       }
       draw_triangle(triangle, surface);
     }
+  }
+
+  [[nodiscard]] const TexturePyramid* stand_in_texture(std::uint32_t material) const {
+    return texture_all_ && scene_.materials[material].alpha_mode != AlphaMode::kMask ? &white_texel() : nullptr;
   }
 
   void transform(const Object& object, const Mesh& mesh) {
@@ -207,6 +220,7 @@ class Recorder {
   const ImpostorFrame& frame_;
   std::span<const Layer> layers_;
   bool closed_;
+  bool texture_all_;
   ClosedCoverage rows_;
   std::vector<LayerImage> images_;
   std::vector<FrameVertex> vertices_;  // of the part
@@ -216,8 +230,8 @@ class Recorder {
 
 std::vector<LayerImage> record_layers(const Scene& scene, const TexturePyramids& textures, std::span<const std::uint32_t> objects,
                                       const ImpostorFrame& frame, std::span<const Layer> layers, Coverage coverage,
-                                      const WorkBudget& budget) {
-  Recorder recorder(scene, textures, frame, layers, coverage);
+                                      const WorkBudget& budget, Texturing texturing) {
+  Recorder recorder(scene, textures, frame, layers, coverage, texturing);
   for (const std::uint32_t id : objects) {
     budget.check();
     recorder.draw_object(scene.objects.at(id), budget);

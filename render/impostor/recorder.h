@@ -20,11 +20,14 @@
 namespace standin {
 
 enum class Coverage { kClosed, kCentre };  // centre sampling is for tests: it leaves gaps
+/// kEverywhere, for tests: surfaces without texture are given one white texel and go the way of textured ones, to the same bytes.
+enum class Texturing { kWhereTextured, kEverywhere };
 
 /// One image per layer, near to far. `layers` must not be empty; their ranges adjoin, and what lies before the first or beyond the last is
 /// taken into that one. Every vertex must lie in front of the reference viewpoint.
 [[nodiscard]] std::vector<LayerImage> record_layers(const Scene& scene, const TexturePyramids& textures,
                                                     std::span<const std::uint32_t> objects, const ImpostorFrame& frame,
-                                                    std::span<const Layer> layers, Coverage coverage, const WorkBudget& budget = {});
+                                                    std::span<const Layer> layers, Coverage coverage, const WorkBudget& budget = {},
+                                                    Texturing texturing = Texturing::kWhereTextured);
 
 }  // namespace standin

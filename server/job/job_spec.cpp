@@ -145,7 +145,8 @@ std::vector<SpecField> make_fields() {
       field("verify.views", "--verify-views", &JobSpec::verify_views, "views that place renders for verification", between(0, 100'000),
             false),
       field("seed", "--seed", &JobSpec::seed, "seed of everything random", at_least(0)),
-      field("force", "--force", &JobSpec::force, "stages to run although they could be left out", json::object(), false),
+      field("force", "--force", &JobSpec::force, "stages that leave nothing out, also where that cannot change the result",
+            {{"items", {{"type", "string"}, {"enum", {"all", "visibility", "candidates", "bake"}}}}}, false),
       field("threads", "--threads", &JobSpec::threads, "threads; 0: one per processor", between(0, 1024), false),
   };
 }
@@ -229,6 +230,10 @@ void read_object(JobSpec& spec, const json& object, const std::string& prefix, c
 const std::vector<SpecField>& spec_fields() {
   static const std::vector<SpecField> fields = make_fields();
   return fields;
+}
+
+bool forced(const JobSpec& spec, std::string_view stage) {
+  return std::ranges::any_of(spec.force, [&](const std::string& word) { return word == stage || word == "all"; });
 }
 
 void set_field(JobSpec& spec, const SpecField& field, const json& value, const std::string& place) {

@@ -10,6 +10,7 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "render/base/geometry.h"
@@ -58,7 +59,7 @@ struct JobSpec {
   std::uint64_t survey_views = 20'000;
   std::uint32_t verify_views = 32;
   std::uint64_t seed = 1;
-  std::vector<std::string> force;  // stages that run although they could be left out
+  std::vector<std::string> force;  // stages that leave nothing out; "all": every one
   int threads = 0;                 // 0: one per processor; never part of a result
 };
 
@@ -73,6 +74,9 @@ struct SpecField {
 };
 
 [[nodiscard]] const std::vector<SpecField>& spec_fields();
+
+/// Whether the stage is to do also what cannot change the result.
+[[nodiscard]] bool forced(const JobSpec& spec, std::string_view stage);
 
 /// Sets one field from a JSON value. Throws Failure(kBadConfig) naming `place` (a path into a file, or a flag), the value and the
 /// constraint.

@@ -36,10 +36,17 @@ double padded_quantile(std::vector<double> values, std::uint64_t total, double f
   return *position;
 }
 
-ReachSummary summarise_reach(const World& world, const TimeModel& model, const SizeModel& sizes, const CandidateOptions& options,
-                             const WorkBudget& budget) {
+ReachSummary without_reach(const TimeModel& model, Subdivision whole) {
   ReachSummary summary;
-  Subdivision whole = subdivide_at(world, model, std::numeric_limits<double>::infinity(), budget);
+  summary.worst_bound_ms = model.bound_ms(whole.worst_predicted_ms);
+  summary.subdivision = std::move(whole);
+  return summary;
+}
+
+ReachSummary summarise_reach(const World& world, const TimeModel& model, const Subdivision& whole, const SizeModel& sizes,
+                             const CandidateOptions& options, const WorkBudget& budget) {
+  ReachSummary summary;
+  summary.known = true;
   const double worst_ms = whole.worst_predicted_ms;
   summary.worst_bound_ms = model.bound_ms(worst_ms);
   for (double share = kFirstShare; share > kLeastShare; share *= kNextShare) {

@@ -19,6 +19,7 @@ struct ReachSummary {
   Subdivision subdivision;           // at the last threshold
   std::vector<double> reachable_ms;  // bound, per CPV of `subdivision`
   std::uint64_t regions = 0;         // leaf regions in all
+  bool known = false;                // false: of all that follows only worst_bound_ms is
   double all_ms = 0.0;               // bounds, milliseconds
   double p99_ms = 0.0;
   double p90_ms = 0.0;
@@ -26,8 +27,11 @@ struct ReachSummary {
   std::vector<std::uint32_t> blockers;  // objects that make up most of what is left in the worst region
 };
 
-[[nodiscard]] ReachSummary summarise_reach(const World& world, const TimeModel& model, const SizeModel& sizes,
+/// `whole`: the regions of the view space, without a budget.
+[[nodiscard]] ReachSummary summarise_reach(const World& world, const TimeModel& model, const Subdivision& whole, const SizeModel& sizes,
                                            const CandidateOptions& options, const WorkBudget& budget);
+/// The same where nobody asks how low the budget may go: worst_bound_ms alone is known.
+[[nodiscard]] ReachSummary without_reach(const TimeModel& model, Subdivision whole);
 
 /// Value at rank floor(share * (total - 1)) of `values` filled up with `fill` to `total` entries, fill being no greater than any of them.
 [[nodiscard]] double padded_quantile(std::vector<double> values, std::uint64_t total, double fill, double share);

@@ -28,6 +28,11 @@ class StageClock {
   void leave_out(std::string stage, std::string reason) {
     left_out_.push_back({{"stage", std::move(stage)}, {"reason", std::move(reason)}});
   }
+  /// A whole stage that is not run.
+  void skip(const std::string& stage, std::string reason) {
+    seconds_[stage] = 0.0;
+    leave_out(stage, std::move(reason));
+  }
   [[nodiscard]] const nlohmann::json& seconds() const { return seconds_; }
   [[nodiscard]] const nlohmann::json& left_out() const { return left_out_; }
 

@@ -75,21 +75,27 @@ std::vector<Box> boxes_of(const ViewSpace& space, const std::vector<CellKey>& ke
   return boxes;
 }
 
-bool forced(const JobSpec& spec, const std::string& stage) {
-  return std::ranges::find(spec.force, stage) != spec.force.end();
-}
-
 // Whether to compute visible sets; says why not.
 bool wants_visibility(const JobSpec& spec, World& world, const std::vector<Box>& regions, StageClock& clock) {
   if (spec.visibility == "off") {
     clock.leave_out("visibility", "switched off");
     return false;
   }
+  const bool asked_for = spec.visibility == "on" || forced(spec, "visibility");
+  if (world.scene.objects.size() == 1 && !asked_for) {
+    clock.leave_out("visibility", "a single object: nothing can hide it");
+    return false;
+  }
   world.occlusion = probe_occlusion(world.scene, *world.raytracer, regions, spec.seed);
-  if (spec.visibility == "on" || forced(spec, "visibility") || world.occlusion >= kOcclusionWorthwhile) return true;
-  clock.leave_out("visibility", "a probe found " + std::to_string(static_cast<int>(100.0 * world.occlusion)) +
-                                    " % of the triangles hidden: no occlusion to gain");
+  if (asked_for || world.occlusion >= kOcclusionWorthwhile) return true;
+  const std::string hidden = "a probe found " + std::to_string(static_cast<int>(100.0 * world.occlusion)) + " % of the triangles hidden: ";
+  clock.leave_out("visibility", hidden + (world.occlusion > 0.0 ? "visible sets would gain little" : "no occlusion to gain"));
   return false;
+}
+
+// Sets that hold every object say nothing.
+bool tells_anything(const Visibility& visibility, std::size_t objects) {
+  return std::ranges::any_of(visibility.sets, [&](const auto& set) { return set.size() < objects; });
 }
 
 void add_visibility(const JobSpec& spec, World& world, StageClock& clock, const WorkBudget& budget) {
@@ -103,6 +109,7 @@ void add_visibility(const JobSpec& spec, World& world, StageClock& clock, const 
     world.missed_ray_share += set.missed_ray_share / static_cast<double>(sets.size());
     world.visibility.sets.push_back(std::move(set.objects));
   }
+  if (!tells_anything(world.visibility, world.scene.objects.size())) world.visibility = {};
 }
 
 }  // namespace
@@ -163,6 +170,7 @@ World build_world(const std::filesystem::path& scene_file, const JobSpec& spec, 
   for (const auto& sentence : world.view_space.left_out) clock.leave_out("view_space", sentence);
   clock.run("visibility", [&] { add_visibility(spec, world, clock, budget); });
   world.quality = quality_of(spec, world.view_space.kind);
+  world.quality.leave_out = !forced(spec, "bake");
   return world;
 }
 
