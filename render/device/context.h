@@ -25,7 +25,7 @@ class Context {
 
 /// Makes a context and makes it current. `width` and `height` size the default framebuffer where the device has one (OSMesa); Renderer
 /// draws into a framebuffer object of its own. Sets LP_NUM_THREADS=0 first, so that llvmpipe does all its work in the calling thread, where
-/// its CPU time can be measured. Throws Failure(kDeviceUnavailable).
+/// its CPU time can be measured, and makes the process keep freed memory (context.cpp says why). Throws Failure(kDeviceUnavailable).
 [[nodiscard]] std::unique_ptr<Context> make_context(DeviceKind kind, int width, int height);
 
 }  // namespace standin
