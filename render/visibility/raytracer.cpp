@@ -85,26 +85,39 @@ bool is_singular(const Mat4& transform) {
   return !(std::abs(glm::determinant(linear)) > 1e-9 * volume);
 }
 
+// The meshes and materials of an object's parts: objects alike in these share one tree.
+using Appearance = std::vector<std::uint32_t>;
+
+// What a geometry of the world shows: an object as an instance, or one part of it as plain triangles.
+struct Target {
+  std::uint32_t object = 0;
+  std::uint32_t part = 0;  // plain triangles only
+};
+
 }  // namespace
 
 struct Raytracer::State {
   const Scene* scene = nullptr;
   bool honour_masks = true;
-  Vec3 origin{0.0};                    // local origin: Embree's coordinates are world minus this
-  std::vector<std::uint32_t> objects;  // by instance id
+  Vec3 origin{0.0};             // local origin: Embree's coordinates are world minus this
+  std::vector<Target> targets;  // by geometry id in the world
   std::map<std::uint32_t, GeometryHandle> mesh_geometries;
-  std::map<std::vector<std::uint32_t>, SceneHandle> prototypes;  // by the meshes and materials of their parts
-  std::vector<SceneHandle> flattened;
+  std::map<Appearance, SceneHandle> prototypes;
   SceneHandle world;
 
-  State(const Scene& source, std::vector<std::uint32_t> chosen, const Options& options);
-  RTCScene prototype(const Object& object);
-  RTCScene flat_copy(const Object& object);
-  void add_instance(const Object& object);
-  [[nodiscard]] bool is_seen(std::uint32_t instance, std::uint32_t part, std::uint32_t triangle, float u, float v) const;
+  State(const Scene& source, const std::vector<std::uint32_t>& objects, const Options& options);
+  [[nodiscard]] Appearance appearance(const Object& object) const;
+  RTCScene prototype(const Appearance& appearance);
+  void add_instance(std::uint32_t id);
+  void add_triangles(std::uint32_t id);
+  void add_to_world(RTCGeometry geometry, const Target& target);
+  [[nodiscard]] const Target& target_of(RTCHitN* hit) const;
+  [[nodiscard]] bool is_seen(const Target& target, RTCHitN* hit) const;
 };
 
 namespace {
+
+constexpr float kNoHit = std::numeric_limits<float>::infinity();
 
 // What Embree hands back to the filter: it sees the first member only.
 struct Query {
@@ -112,40 +125,34 @@ struct Query {
   const Raytracer::State* state = nullptr;
   double from_m = 0.0;
   double to_m = 0.0;
-  float best_distance = std::numeric_limits<float>::infinity();
+  float best_distance = kNoHit;
   std::uint32_t best_object = 0;
   std::vector<Hit> hits;
 };
-
-bool is_seen(const Query& query, const RTCFilterFunctionNArguments& candidate, std::uint32_t instance) {
-  return query.state->is_seen(instance, RTCHitN_geomID(candidate.hit, 1, 0), RTCHitN_primID(candidate.hit, 1, 0),
-                              RTCHitN_u(candidate.hit, 1, 0), RTCHitN_v(candidate.hit, 1, 0));
-}
 
 // Embree offers hits no farther than the best so far, in the order of its tree: equal distances are settled by object id here, so that the
 // answer does not depend on the tree.
 void keep_nearest(const RTCFilterFunctionNArguments* candidate) {
   auto& query = *reinterpret_cast<Query*>(candidate->context);
-  const std::uint32_t instance = RTCHitN_instID(candidate->hit, 1, 0, 0);
-  const std::uint32_t object = query.state->objects[instance];
+  const Target& target = query.state->target_of(candidate->hit);
   const float distance = RTCRayN_tfar(candidate->ray, 1, 0);
-  const bool worse = distance == query.best_distance && object >= query.best_object;
-  if (worse || !is_seen(query, *candidate, instance)) {
+  const bool worse = distance == query.best_distance && target.object >= query.best_object;
+  if (worse || !query.state->is_seen(target, candidate->hit)) {
     candidate->valid[0] = 0;
     return;
   }
   query.best_distance = distance;
-  query.best_object = object;
+  query.best_object = target.object;
 }
 
 // Rejecting every hit keeps the ray alive to its end.
 void keep_all(const RTCFilterFunctionNArguments* candidate) {
   auto& query = *reinterpret_cast<Query*>(candidate->context);
-  const std::uint32_t instance = RTCHitN_instID(candidate->hit, 1, 0, 0);
+  const Target& target = query.state->target_of(candidate->hit);
   const double distance = RTCRayN_tfar(candidate->ray, 1, 0);
   candidate->valid[0] = 0;
-  if (distance >= query.from_m && distance <= query.to_m && is_seen(query, *candidate, instance))
-    query.hits.push_back({distance, query.state->objects[instance]});
+  if (distance >= query.from_m && distance <= query.to_m && query.state->is_seen(target, candidate->hit))
+    query.hits.push_back({distance, target.object});
 }
 
 void trace(Query& query, RTCFilterFunctionN filter, const Vec3& origin, const Vec3& direction, float near, float far) {
@@ -174,67 +181,86 @@ std::vector<std::uint32_t> all_objects(const Scene& scene) {
 
 }  // namespace
 
-Raytracer::State::State(const Scene& source, std::vector<std::uint32_t> chosen, const Options& options)
-    : scene(&source), honour_masks(options.honour_masks), origin(centre_of(source, chosen)), objects(std::move(chosen)) {
+Raytracer::State::State(const Scene& source, const std::vector<std::uint32_t>& objects, const Options& options)
+    : scene(&source), honour_masks(options.honour_masks), origin(centre_of(source, objects)) {
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(std::max(1, options.threads)));
+  std::map<Appearance, int> uses;
+  for (const std::uint32_t id : objects) ++uses[appearance(scene->objects[id])];
   world = new_scene();
-  for (const std::uint32_t object : objects) add_instance(scene->objects[object]);
+  for (const std::uint32_t id : objects) {
+    const Object& object = scene->objects[id];
+    const bool plain = uses[appearance(object)] == 1 || is_singular(object.world_from_object);
+    plain ? add_triangles(id) : add_instance(id);
+  }
   rtcCommitScene(world.get());
   Device::instance().throw_reported();
 }
 
-// Objects that show the same parts share one tree; objects that show the same mesh share its vertices.
-RTCScene Raytracer::State::prototype(const Object& object) {
-  std::vector<std::uint32_t> key;
+Appearance Raytracer::State::appearance(const Object& object) const {
+  Appearance result;
   for (std::uint32_t i = 0; i < object.part_count; ++i) {
-    key.push_back(scene->parts[object.first_part + i].mesh);
-    key.push_back(scene->parts[object.first_part + i].material);
+    result.push_back(scene->parts[object.first_part + i].mesh);
+    result.push_back(scene->parts[object.first_part + i].material);
   }
-  SceneHandle& shared = prototypes[key];
+  return result;
+}
+
+// Objects that show the same mesh share its vertices.
+RTCScene Raytracer::State::prototype(const Appearance& parts) {
+  SceneHandle& shared = prototypes[parts];
   if (shared) return shared.get();
   shared = new_scene();
-  for (std::uint32_t i = 0; i < object.part_count; ++i) {
-    const std::uint32_t mesh = key[2 * i];
-    GeometryHandle& geometry = mesh_geometries[mesh];
-    if (!geometry) geometry = new_triangles(scene->meshes[mesh].positions, scene->meshes[mesh].indices);
+  for (std::uint32_t i = 0; 2 * i < parts.size(); ++i) {
+    const Mesh& mesh = scene->meshes[parts[2 * i]];
+    GeometryHandle& geometry = mesh_geometries[parts[2 * i]];
+    if (!geometry) geometry = new_triangles(mesh.positions, mesh.indices);
     rtcAttachGeometryByID(shared.get(), geometry.get(), i);
   }
   rtcCommitScene(shared.get());
   return shared.get();
 }
 
-// The object's triangles in world axes, relative to its own transform's translation.
-RTCScene Raytracer::State::flat_copy(const Object& object) {
-  SceneHandle copy = new_scene();
-  const Mat3 linear(object.world_from_object);
+void Raytracer::State::add_instance(std::uint32_t id) {
+  const Object& object = scene->objects[id];
+  Mat4 local_from_object = object.world_from_object;
+  local_from_object[3] -= Vec4(origin, 0.0);
+  const glm::mat4 transform(local_from_object);
+  const GeometryHandle instance(rtcNewGeometry(Device::instance().handle(), RTC_GEOMETRY_TYPE_INSTANCE));
+  rtcSetGeometryInstancedScene(instance.get(), prototype(appearance(object)));
+  rtcSetGeometryTransform(instance.get(), 0, RTC_FORMAT_FLOAT4X4_COLUMN_MAJOR, glm::value_ptr(transform));
+  rtcCommitGeometry(instance.get());
+  add_to_world(instance.get(), {id, 0});
+}
+
+void Raytracer::State::add_triangles(std::uint32_t id) {
+  const Object& object = scene->objects[id];
   for (std::uint32_t i = 0; i < object.part_count; ++i) {
     const Mesh& mesh = scene->meshes[scene->parts[object.first_part + i].mesh];
     std::vector<glm::vec3> positions;
     positions.reserve(mesh.positions.size());
-    for (const glm::vec3& position : mesh.positions) positions.emplace_back(linear * Vec3(position));
-    rtcAttachGeometryByID(copy.get(), new_triangles(positions, mesh.indices).get(), i);
+    for (const glm::vec3& position : mesh.positions)
+      positions.emplace_back(Vec3(object.world_from_object * Vec4(Vec3(position), 1.0)) - origin);
+    add_to_world(new_triangles(positions, mesh.indices).get(), {id, i});
   }
-  rtcCommitScene(copy.get());
-  flattened.push_back(std::move(copy));
-  return flattened.back().get();
 }
 
-void Raytracer::State::add_instance(const Object& object) {
-  const bool flat = is_singular(object.world_from_object);
-  Mat4 local_from_object = flat ? Mat4(1.0) : object.world_from_object;
-  local_from_object[3] = object.world_from_object[3] - Vec4(origin, 0.0);
-  const glm::mat4 transform(local_from_object);
-  const GeometryHandle instance(rtcNewGeometry(Device::instance().handle(), RTC_GEOMETRY_TYPE_INSTANCE));
-  rtcSetGeometryInstancedScene(instance.get(), flat ? flat_copy(object) : prototype(object));
-  rtcSetGeometryTransform(instance.get(), 0, RTC_FORMAT_FLOAT4X4_COLUMN_MAJOR, glm::value_ptr(transform));
-  rtcCommitGeometry(instance.get());
-  rtcAttachGeometry(world.get(), instance.get());  // ids count up from 0
+void Raytracer::State::add_to_world(RTCGeometry geometry, const Target& target) {
+  rtcAttachGeometryByID(world.get(), geometry, static_cast<unsigned>(targets.size()));
+  targets.push_back(target);
 }
 
-bool Raytracer::State::is_seen(std::uint32_t instance, std::uint32_t part, std::uint32_t triangle, float u, float v) const {
+const Target& Raytracer::State::target_of(RTCHitN* hit) const {
+  const unsigned instance = RTCHitN_instID(hit, 1, 0, 0);
+  return targets[instance == RTC_INVALID_GEOMETRY_ID ? RTCHitN_geomID(hit, 1, 0) : instance];
+}
+
+bool Raytracer::State::is_seen(const Target& target, RTCHitN* hit) const {
   if (!honour_masks) return true;
-  const Part& hit = scene->parts[scene->objects[objects[instance]].first_part + part];
-  return is_opaque(*scene, scene->materials[hit.material], scene->meshes[hit.mesh], triangle, u, v);
+  const bool instanced = RTCHitN_instID(hit, 1, 0, 0) != RTC_INVALID_GEOMETRY_ID;
+  const std::uint32_t part = instanced ? RTCHitN_geomID(hit, 1, 0) : target.part;
+  const Part& shown = scene->parts[scene->objects[target.object].first_part + part];
+  return is_opaque(*scene, scene->materials[shown.material], scene->meshes[shown.mesh], RTCHitN_primID(hit, 1, 0), RTCHitN_u(hit, 1, 0),
+                   RTCHitN_v(hit, 1, 0));
 }
 
 Raytracer::Raytracer(const Scene& scene, const Options& options) : Raytracer(scene, all_objects(scene), options) {}
@@ -249,8 +275,8 @@ Raytracer& Raytracer::operator=(Raytracer&&) noexcept = default;
 std::optional<Hit> Raytracer::nearest(const Vec3& origin, const Vec3& direction, double from_m) const {
   Query query;
   query.state = state_.get();
-  trace(query, keep_nearest, origin, direction, static_cast<float>(std::max(0.0, from_m)), std::numeric_limits<float>::infinity());
-  if (query.best_distance == std::numeric_limits<float>::infinity()) return std::nullopt;
+  trace(query, keep_nearest, origin, direction, static_cast<float>(std::max(0.0, from_m)), kNoHit);
+  if (query.best_distance == kNoHit) return std::nullopt;
   return Hit{query.best_distance, query.best_object};
 }
 

@@ -1,7 +1,9 @@
 // Rays against triangles, behind one header (the only file pair that includes Embree).
 //
 // Robust scenes (no leaks through shared edges); positions are stored relative to a local origin given in double. Alpha-masked texels count
-// as transparent where `honour_masks`. Instances are Embree instances. Thread-safe for queries. The scene must outlive the raytracer.
+// as transparent where `honour_masks`. Objects that look like others are instances of one tree; all
+// others lie as plain triangles in the tree of the world, which is two to three times faster to search than instances whose boxes overlap.
+// Thread-safe for queries. The scene must outlive the raytracer.
 #pragma once
 
 #include <cstdint>

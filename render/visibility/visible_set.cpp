@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
+#include <utility>
 
 #include "render/base/parallel.h"
 #include "render/base/rng.h"
@@ -12,7 +14,14 @@
 namespace standin {
 namespace {
 
-constexpr std::uint64_t kRaysPerCheck = 1 << 14;
+// A whole batch: kShares x kShares equal shares of the sphere, kRaysPerShare rays each.
+constexpr std::uint64_t kShares = 76;
+constexpr std::uint64_t kRaysPerShare = 8;
+static_assert(kRaysPerShare * kShares * kShares >= 46'100, "ln 0.01 / ln(1 - 1e-4): what certifies a share of 1e-4 at 99 %");
+constexpr std::uint64_t kAimedRays = 2;        // per object and round
+constexpr std::uint64_t kExploringRays = 64;  // per object found
+constexpr double kExploredBounds = 2.0;        // times the found object's size
+constexpr double kExploredRegion = 0.2;        // times the region's
 
 Vec3 random_point(Rng& rng, const Box& box) {
   const double x = rng.uniform();
@@ -21,9 +30,10 @@ Vec3 random_point(Rng& rng, const Box& box) {
   return box.min + Vec3(x, y, z) * box.size();
 }
 
-Vec3 random_direction(Rng& rng) {
-  const double along = rng.uniform(-1.0, 1.0);
-  const double turn = rng.uniform(0.0, 2.0 * std::numbers::pi);
+/// Uniform over share (i, j) of shares x shares equal ones of the sphere (Archimedes).
+Vec3 random_direction(Rng& rng, std::uint64_t i, std::uint64_t j, std::uint64_t shares) {
+  const double along = 2.0 * (static_cast<double>(i) + rng.uniform()) / static_cast<double>(shares) - 1.0;
+  const double turn = 2.0 * std::numbers::pi * (static_cast<double>(j) + rng.uniform()) / static_cast<double>(shares);
   const double radius = std::sqrt(std::max(0.0, 1.0 - along * along));
   return {radius * std::cos(turn), along, radius * std::sin(turn)};
 }
@@ -32,55 +42,124 @@ bool meet(const Box& a, const Box& b) {
   return !intersection(a, b).empty();
 }
 
-// How often each object was the first thing a ray met; `certain` holds those that need no ray or were found by an aimed one.
-struct Finds {
-  std::vector<std::uint32_t> uniform_hits;
-  std::vector<bool> certain;
-};
-
-void shoot_uniform(const Raytracer& raytracer, const Box& region, std::uint64_t rays, Rng& rng, const WorkBudget& budget, Finds& finds) {
-  for (std::uint64_t i = 0; i < rays; ++i) {
-    if (i % kRaysPerCheck == 0) budget.check();
-    const Vec3 position = random_point(rng, region);
-    if (const auto hit = raytracer.nearest(position, random_direction(rng))) ++finds.uniform_hits[hit->object];
+class RegionSampler {
+ public:
+  RegionSampler(const Scene& scene, const Raytracer& raytracer, const Box& region, const VisibilityOptions& options, std::uint64_t stream,
+                const WorkBudget& budget)
+      : scene_(scene),
+        raytracer_(raytracer),
+        region_(region),
+        budget_(budget),
+        rng_(options.seed, stream),
+        rays_left_(options.rays),
+        uniform_hits_(scene.objects.size()) {
+    for (const Object& object : scene.objects) confirmed_.push_back(meet(region, object.bounds));
   }
-}
 
-// Each object gets the same number of rays on average, however small it looks.
-void shoot_aimed(const Scene& scene, const Raytracer& raytracer, const Box& region, std::uint64_t rays, Rng& rng, const WorkBudget& budget,
-                 Finds& finds) {
-  for (std::uint64_t i = 0; i < rays; ++i) {
-    if (i % kRaysPerCheck == 0) budget.check();
-    const Vec3 position = random_point(rng, region);
-    const Vec3 way = random_point(rng, scene.objects[rng.below(scene.objects.size())].bounds) - position;
+  VisibleSet sample() {
+    std::uint64_t shares = kShares;
+    bool certified = false;
+    while (!certified && shares > 0) {
+      shoot_aimed(rays_left_ / 2);
+      shares = std::min(kShares, static_cast<std::uint64_t>(std::sqrt(static_cast<double>(rays_left_ / kRaysPerShare))));
+      const bool found_new = shoot_uniform(shares);
+      certified = shares == kShares && !found_new;
+    }
+    return summary(certified);
+  }
+
+ private:
+  [[nodiscard]] bool is_found(std::uint32_t object) const { return confirmed_[object] || uniform_hits_[object] > 0; }
+
+  [[nodiscard]] std::optional<Hit> shoot_at(const Vec3& target, const Vec3& position) const {
+    const Vec3 way = target - position;
     const double length = glm::length(way);
-    if (!(length > 0.0)) continue;
-    if (const auto hit = raytracer.nearest(position, way / length)) finds.certain[hit->object] = true;
+    return length > 0.0 ? raytracer_.nearest(position, way / length) : std::nullopt;
   }
-}
 
-// Good and Turing: the share of rays that would meet something new is that of the rays whose find no other ray has confirmed.
-VisibleSet summary(const Finds& finds, std::uint64_t uniform_rays) {
-  VisibleSet set;
-  std::uint64_t singletons = 0;
-  for (std::uint32_t object = 0; object < finds.certain.size(); ++object) {
-    if (finds.certain[object] || finds.uniform_hits[object] > 0) set.objects.push_back(object);
-    if (!finds.certain[object] && finds.uniform_hits[object] == 1) ++singletons;
+  // At all that has not been found, however small it looks, as far as `limit` goes.
+  void shoot_aimed(std::uint64_t limit) {
+    if (limit == 0) return;
+    const auto count = static_cast<std::uint32_t>(confirmed_.size());
+    const auto first = static_cast<std::uint32_t>(rng_.below(count));
+    for (std::uint32_t i = 0; i < count; ++i) {
+      budget_.check();
+      const std::uint32_t object = (first + i) % count;
+      for (std::uint64_t k = 0; k < kAimedRays && !is_found(object); ++k) {
+        if (limit-- == 0 || rays_left_ == 0) return;
+        --rays_left_;
+        const Vec3 position = random_point(rng_, region_);
+        const auto hit = shoot_at(random_point(rng_, scene_.objects[object].bounds), position);
+        if (!hit) continue;
+        const bool is_new = !is_found(hit->object);
+        confirmed_[hit->object] = true;
+        if (is_new) explore(position, hit->object);
+      }
+    }
   }
-  set.missed_ray_share = uniform_rays > 0 ? static_cast<double>(singletons) / static_cast<double>(uniform_rays) : 1.0;
-  return set;
-}
 
-VisibleSet sample_region(const Scene& scene, const Raytracer& raytracer, const Box& region, std::uint64_t rays, Rng rng,
-                         const WorkBudget& budget) {
-  Finds finds{std::vector<std::uint32_t>(scene.objects.size()), std::vector<bool>(scene.objects.size())};
-  if (scene.objects.empty()) return {};
-  for (std::size_t object = 0; object < scene.objects.size(); ++object) finds.certain[object] = meet(region, scene.objects[object].bounds);
-  const std::uint64_t uniform_rays = rays - rays / 2;
-  shoot_uniform(raytracer, region, uniform_rays, rng, budget, finds);
-  shoot_aimed(scene, raytracer, region, rays / 2, rng, budget, finds);
-  return summary(finds, uniform_rays);
-}
+  // A batch over shares x shares equal shares of the sphere. Returns whether it met anything new.
+  bool shoot_uniform(std::uint64_t shares) {
+    rays_left_ -= kRaysPerShare * shares * shares;
+    uniform_rays_ += kRaysPerShare * shares * shares;
+    bool found_new = false;
+    for (std::uint64_t i = 0; i < shares; ++i) {
+      budget_.check();
+      for (std::uint64_t ray = 0; ray < kRaysPerShare * shares; ++ray) {
+        const Vec3 position = random_point(rng_, region_);
+        const auto hit = raytracer_.nearest(position, random_direction(rng_, i, ray / kRaysPerShare, shares));
+        if (!hit) continue;
+        const bool is_new = !is_found(hit->object);
+        ++uniform_hits_[hit->object];
+        if (is_new) explore(position, hit->object);
+        found_new = found_new || is_new;
+      }
+    }
+    return found_new;
+  }
+
+  // Where one thing is seen, its neighbours are: through the same gap, from about the same place. What is found so is explored in turn.
+  void explore(const Vec3& from, std::uint32_t object) {
+    std::vector<std::pair<Vec3, std::uint32_t>> waiting = {{from, object}};
+    while (!waiting.empty()) {
+      const auto [centre, found] = waiting.back();
+      waiting.pop_back();
+      const Box& bounds = scene_.objects[found].bounds;
+      for (std::uint64_t i = 0; i < kExploringRays && rays_left_ > 0; ++i) {
+        --rays_left_;
+        const Vec3 moved = centre + kExploredRegion * (random_point(rng_, region_) - region_.centre());
+        const Vec3 position = glm::clamp(moved, region_.min, region_.max);
+        const auto hit = shoot_at(bounds.centre() + kExploredBounds * (random_point(rng_, bounds) - bounds.centre()), position);
+        if (!hit || is_found(hit->object)) continue;
+        confirmed_[hit->object] = true;
+        waiting.emplace_back(position, hit->object);
+      }
+    }
+  }
+
+  [[nodiscard]] VisibleSet summary(bool certified) const {
+    VisibleSet set;
+    std::uint64_t singletons = 0;
+    for (std::uint32_t object = 0; object < confirmed_.size(); ++object) {
+      if (is_found(object)) set.objects.push_back(object);
+      if (!confirmed_[object] && uniform_hits_[object] == 1) ++singletons;
+    }
+    set.missed_ray_share = uniform_rays_ > 0 ? static_cast<double>(singletons) / static_cast<double>(uniform_rays_) : 1.0;
+    set.certified = certified;
+    return set;
+  }
+
+  const Scene& scene_;
+  const Raytracer& raytracer_;
+  const Box& region_;
+  const WorkBudget& budget_;
+  Rng rng_;
+  std::uint64_t rays_left_;
+  std::uint64_t uniform_rays_ = 0;
+  // A uniform ray's find is confirmed by other uniform rays and by aimed ones, but not by the exploration that it started itself.
+  std::vector<std::uint32_t> uniform_hits_;
+  std::vector<bool> confirmed_;  // met by an aimed ray, first found by exploring, or no ray is needed
+};
 
 /// Distance at which the ray enters the box; infinity where it misses it.
 double entry_distance(const Box& box, const Vec3& origin, const Vec3& direction) {
@@ -121,9 +200,10 @@ bool seems_hidden(const Scene& scene, const Raytracer& raytracer, const Box& reg
 std::vector<VisibleSet> sample_visible_sets(const Scene& scene, const Raytracer& raytracer, const std::vector<Box>& regions,
                                             const VisibilityOptions& options, int threads, const WorkBudget& budget) {
   std::vector<VisibleSet> sets(regions.size());
+  if (scene.objects.empty()) return sets;
   std::atomic<std::size_t> done{0};
   parallel_for(regions.size(), threads, budget, [&](std::size_t i) {
-    sets[i] = sample_region(scene, raytracer, regions[i], options.rays, Rng(options.seed, i), budget);
+    sets[i] = RegionSampler(scene, raytracer, regions[i], options, i, budget).sample();
     budget.report("visibility", static_cast<double>(++done) / static_cast<double>(regions.size()));
   });
   return sets;

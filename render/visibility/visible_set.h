@@ -1,10 +1,15 @@
-// From-region visibility by plain ray sampling: which objects can be seen from a box of positions (a certified, aimed sampler is a later
-// step).
+// From-region visibility by ray sampling: which objects can be seen from a box of positions.
 //
-// Half the rays have a uniform random position and direction; the other half are aimed from a uniform position at a random point of a
-// random object's bounds, every object equally often, since small and far objects are found that way. Objects whose bounds meet the box are
-// always visible. The missed share is Good and Turing's estimate over the uniform half: the expected share of further uniform rays whose
-// first hit is no member of the set, = objects that a single uniform ray found and nothing else confirms / uniform rays.
+// Rounds, each of rays aimed at all objects not found yet and a batch of rays uniform in position and direction (spread evenly over the
+// sphere), until a whole batch of 46,208 meets nothing new. Around every find a few rays explore its neighbours (guided visibility
+// sampling, Wonka et al. 2006), which would take uniform rays a hundred times as long. Objects whose bounds meet the box are always
+// visible.
+//
+// The whole batch that found nothing new is a certificate: were the missed share of uniform rays above 1e-4, it would have met nothing
+// new with a probability below 1 %. Each batch is one such test of the set before it; a region has at most rays / 46,208 of them. The
+// missed share itself is Good and Turing's estimate: the expected share of further uniform rays whose first hit is no member of the set,
+// = objects that one uniform ray found and no independent ray confirms / uniform rays. It is an upper estimate, since what that ray's own
+// exploration sees again counts as no confirmation.
 #pragma once
 
 #include <cstdint>
@@ -16,13 +21,14 @@
 namespace standin {
 
 struct VisibilityOptions {
-  std::uint64_t rays = 200'000;  // per region, both halves together
+  std::uint64_t rays = 200'000;  // at most, per region, of all kinds
   std::uint64_t seed = 1;
 };
 
 struct VisibleSet {
   std::vector<std::uint32_t> objects;  // ascending
-  double missed_ray_share = 0.0;       // Good-Turing estimate, 0..1
+  double missed_ray_share = 0.0;       // estimate, 0..1; 1 without uniform rays
+  bool certified = false;              // the last batch was whole and met nothing new
 };
 
 /// One set per region, independent of the number of threads.
