@@ -1,16 +1,13 @@
 // Target files: "format": "standin.target". What is read has been checked: no number that is negative, not finite or missing gets past
 // here.
-#include <openssl/evp.h>
-
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <limits>
 #include <nlohmann/json.hpp>
-#include <system_error>
 
 #include "estimation/time_model.h"
 #include "render/base/error.h"
+#include "render/base/sha256.h"
+#include "render/base/staged_file.h"
 
 namespace standin {
 namespace {
@@ -18,24 +15,6 @@ namespace {
 using Json = nlohmann::json;
 constexpr const char* kFormat = "standin.target";
 constexpr int kVersion = 1;
-
-std::string sha256_of(const std::string& bytes) {
-  std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
-  unsigned int length = 0;
-  if (EVP_Digest(bytes.data(), bytes.size(), digest.data(), &length, EVP_sha256(), nullptr) != 1)
-    throw Failure(ErrorWord::kInternal, "SHA-256 is not available");
-  std::string hex;
-  for (unsigned int i = 0; i < length; ++i)
-    for (const int nibble : {digest[i] >> 4, digest[i] & 15}) hex += "0123456789abcdef"[nibble];
-  return hex;
-}
-
-std::string bytes_of(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream || std::filesystem::is_directory(file))
-    throw Failure(ErrorWord::kFileMissing, "target file " + file.string() + " cannot be read");
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
 
 /// Reads members of a JSON object, naming file and place in every complaint.
 class Reader {
@@ -141,12 +120,12 @@ Json parse(const std::string& bytes, const std::filesystem::path& file) {
 }  // namespace
 
 Target read_target(const std::filesystem::path& file) {
-  const std::string bytes = bytes_of(file);
+  const std::string bytes = read_file(file);
   const Json json = parse(bytes, file);
   check_format(json, file);
   const Reader root(json, file.string());
   Target target;
-  target.sha256 = sha256_of(bytes);
+  target.sha256 = sha256_hex(bytes);
   target.id = root.text("id");
   target.model = read_model(root.object("model"));
   const Reader machine = root.object("machine");
@@ -181,17 +160,7 @@ void write_target(const Target& target, const std::filesystem::path& file) {
                        {"p90_error", target.p90_error},
                        {"measured_coverage", target.measured_coverage},
                        {"left_out", target.left_out}}}};
-  const std::filesystem::path beside = file.string() + ".part";
-  std::ofstream stream(beside, std::ios::binary | std::ios::trunc);
-  stream << json.dump(2) << '\n';
-  stream.close();
-  std::error_code error;
-  if (stream) std::filesystem::rename(beside, file, error);
-  if (!stream || error) {
-    std::error_code ignored;
-    std::filesystem::remove(beside, ignored);
-    throw Failure(ErrorWord::kInternal, "target file " + file.string() + " cannot be written");
-  }
+  write_file(file, json.dump(2) + '\n');
 }
 
 }  // namespace standin

@@ -8,16 +8,19 @@
 #include "placement/candidates/candidates.h"
 #include "placement/view_space/survey.h"
 #include "render/base/error.h"
+#include "render/base/sha256.h"
+#include "render/base/staged_file.h"
 #include "render/image/image_io.h"
 #include "render/impostor/atlas.h"
 #include "render/impostor/impostor_glb.h"
-#include "server/files/atomic_file.h"
+#include "server/files/output_folder.h"
 #include "server/files/placement_json.h"
 #include "server/job/left_out.h"
 #include "server/job/metrics.h"
 #include "server/job/reach.h"
 #include "server/job/select_and_bake.h"
 #include "server/job/target_device.h"
+#include "server/job/unsolved.h"
 #include "server/job/world.h"
 #include "server/report/pictures.h"
 #include "server/report/report.h"
@@ -195,7 +198,8 @@ json memory_json(const Placement& placement, const ImpostorSet& set) {
   return {{"texture_bytes", texture},
           {"geometry_bytes", geometry},
           {"total_bytes", texture + geometry},
-          {"atlas_padding_bytes", padding_bytes(set)}};
+          {"atlas_padding_bytes", padding_bytes(set)},
+          {"gpu_bytes", gpu_bytes_json(set.pages)}};
 }
 
 json bound_json(const SelectionSummary& summary) {
@@ -334,8 +338,8 @@ JobOutcome run_place(const JobFiles& files, const JobSpec& spec, const WorkBudge
   metrics["image"] = image_json(verified);
   metrics["heat_map"] = heat_map_json(placed.subdivision, &placed.placement, job.target.model);
   metrics["causes"] = causes_json(job.world, placed.subdivision, job.target.model);
-  metrics["unsolved"] =
-      unsolved_json(job.world, placed.subdivision, placed.placement, placed.selected.selection, job.target.model, spec.budget_ms);
+  metrics.update(
+      unsolved_json(job.world, placed.subdivision, placed.placement, placed.selected.selection, job.target.model, spec.budget_ms));
   folder.write(kInputsFile, inputs_json(files));
   folder.write("placement.json", placement.dump());
   folder.write("impostors.glb", placed.glb);

@@ -1,12 +1,7 @@
 #include "render/scene/file_access.h"
 
-#include <openssl/evp.h>
-#include <unistd.h>
-
 #include <array>
-#include <cstdio>
 #include <fstream>
-#include <memory>
 
 #include "render/base/error.h"
 
@@ -69,36 +64,6 @@ std::vector<std::uint8_t> read_bytes(const fs::path& file) {
     throw Failure(ErrorWord::kFileMissing, file.string() + " cannot be read");
   }
   return bytes;
-}
-
-std::string sha256_hex(std::span<const std::uint8_t> bytes) {
-  std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
-  unsigned int size = 0;
-  if (EVP_Digest(bytes.data(), bytes.size(), digest.data(), &size, EVP_sha256(), nullptr) != 1) {
-    throw Failure(ErrorWord::kInternal, "OpenSSL computes no SHA-256");
-  }
-  static constexpr char kDigits[] = "0123456789abcdef";
-  std::string hex;
-  for (unsigned int i = 0; i < size; ++i) {
-    hex += kDigits[digest[i] >> 4U];
-    hex += kDigits[digest[i] & 15U];
-  }
-  return hex;
-}
-
-void write_whole(const fs::path& file, std::span<const std::span<const std::uint8_t>> pieces) {
-  fs::path part = file;
-  part += "." + std::to_string(getpid()) + ".part";
-  std::error_code failed;
-  {
-    std::ofstream out(part, std::ios::binary | std::ios::trunc);
-    for (const auto& piece : pieces) out.write(reinterpret_cast<const char*>(piece.data()), static_cast<std::streamsize>(piece.size()));
-    out.close();
-    if (out) fs::rename(part, file, failed);
-    if (out && !failed) return;
-  }
-  fs::remove(part, failed);
-  throw Failure(ErrorWord::kFileMissing, file.string() + " cannot be written");
 }
 
 SceneFolder::SceneFolder(const fs::path& scene_file) : folder_(fs::weakly_canonical(fs::absolute(scene_file).parent_path())) {}

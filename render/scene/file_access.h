@@ -12,12 +12,6 @@ namespace standin {
 /// Throws Failure(kFileMissing).
 [[nodiscard]] std::vector<std::uint8_t> read_bytes(const std::filesystem::path& file);
 
-/// Lower-case hex.
-[[nodiscard]] std::string sha256_hex(std::span<const std::uint8_t> bytes);
-
-/// A whole file or none: written beside `file` under another name, then renamed. Throws Failure(kFileMissing).
-void write_whole(const std::filesystem::path& file, std::span<const std::span<const std::uint8_t>> pieces);
-
 /// The folder a scene lies in, and the only one its relative references may reach.
 class SceneFolder {
  public:

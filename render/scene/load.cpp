@@ -5,6 +5,7 @@
 #include <future>
 
 #include "render/base/error.h"
+#include "render/base/sha256.h"
 #include "render/scene/import.h"
 
 namespace standin {
@@ -97,7 +98,7 @@ void check_size(const Scene& scene, const LoadOptions& options) {
 
 Scene load_scene(const fs::path& file, const LoadOptions& options) {
   const std::vector<std::uint8_t> bytes = read_bytes(file);
-  auto digest = std::async(std::launch::async, [&] { return sha256_hex(bytes); });
+  auto digest = std::async(std::launch::async, [&] { return sha256_hex({reinterpret_cast<const char*>(bytes.data()), bytes.size()}); });
   Import import{{}, SceneFolder(file), options, {}};
   Scene& scene = import.scene;
   read(import, file, bytes);

@@ -7,8 +7,8 @@
 #include <nlohmann/json.hpp>
 
 #include "render/base/error.h"
+#include "render/base/staged_file.h"
 #include "render/image/image_io.h"
-#include "render/scene/file_access.h"
 #include "render/scene/gltf_materials.h"
 #include "render/scene/load.h"
 
@@ -159,10 +159,10 @@ class GlbWriter {
     const std::array<std::uint32_t, 5> head{0x46546C67U, 2, word(length), word(text.size()), 0x4E4F534AU};
     const std::array<std::uint32_t, 2> binary_head{word(binary_.size()), 0x004E4942U};
     const auto bytes = [](const auto& list) {
-      return std::span(reinterpret_cast<const std::uint8_t*>(list.data()), list.size() * sizeof(list[0]));
+      return std::string_view(reinterpret_cast<const char*>(list.data()), list.size() * sizeof(list[0]));
     };
-    const std::array<std::span<const std::uint8_t>, 4> pieces{bytes(head), bytes(text), bytes(binary_head), bytes(binary_)};
-    write_whole(file, pieces);
+    const std::array<std::string_view, 4> pieces{bytes(head), bytes(text), bytes(binary_head), bytes(binary_)};
+    write_file(file, pieces);
   }
 
   const Scene& scene_;

@@ -13,7 +13,7 @@
 #include "render/impostor/impostor_glb.h"
 #include "render/scene/load.h"
 #include "server/command_line/commands.h"
-#include "server/files/atomic_file.h"
+#include "server/files/output_folder.h"
 #include "server/job/world.h"
 
 namespace standin {

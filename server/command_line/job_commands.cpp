@@ -45,7 +45,8 @@ void print_place(const json& metrics) {
   std::size_t named = 0;
   for (const auto& entry : metrics["unsolved"]) {
     if (++named > kNamedUnsolved) {
-      std::printf("... and %zu more, in metrics.json\n", metrics["unsolved"].size() - kNamedUnsolved);
+      std::printf("... and %.0f more; metrics.json has the worst, and all by cell and object\n",
+                  number(metrics, "cpv", "unsolved") - static_cast<double>(kNamedUnsolved));
       break;
     }
     std::printf("unsolved: cpv %s (%s): %.2f ms, lowest budget %.2f ms, because of", entry["cpv"].dump().c_str(),

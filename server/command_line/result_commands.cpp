@@ -5,10 +5,10 @@
 
 #include "placement/check/check.h"
 #include "render/base/error.h"
+#include "render/base/staged_file.h"
 #include "render/scene/hierarchy.h"
 #include "render/scene/load.h"
 #include "server/command_line/commands.h"
-#include "server/files/atomic_file.h"
 #include "server/files/placement_json.h"
 #include "server/job/target_device.h"
 #include "server/job/world.h"

@@ -10,50 +10,11 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::size_t kNamedObjects = 5;
-
 // Highest bound after placement per cell: of its CPVs, and of its regions that are none (those keep theirs, which is within the budget).
 std::vector<double> after_per_cell(const Subdivision& subdivision, const Placement& placement) {
   std::vector<double> after_ms(subdivision.cells.size(), 0.0);
   for (const auto& cpv : placement.cpvs) after_ms[cpv.cell] = std::max(after_ms[cpv.cell], cpv.bound_after_ms);
   return after_ms;
-}
-
-std::string region_name(const Subdivision& subdivision, const Cpv& cpv) {
-  const DirectionInterval& interval = subdivision.intervals[cpv.interval];
-  const auto& index = subdivision.cells[cpv.cell].key.index;
-  return "cell " + std::to_string(index[0]) + "," + std::to_string(index[1]) + "," + std::to_string(index[2]) + ", facing " +
-         std::string(face_frame(interval.face).name) + " " + std::to_string(interval.i) + "," + std::to_string(interval.j);
-}
-
-// Largest first; ties by object id.
-std::vector<RegionTerm> largest_terms(std::vector<RegionTerm> terms, std::size_t count) {
-  const auto larger = [](const RegionTerm& a, const RegionTerm& b) {
-    return a.predicted_ms != b.predicted_ms ? a.predicted_ms > b.predicted_ms : a.object < b.object;
-  };
-  const auto middle = terms.begin() + static_cast<std::ptrdiff_t>(std::min(count, terms.size()));
-  std::partial_sort(terms.begin(), middle, terms.end(), larger);
-  terms.erase(middle, terms.end());
-  return terms;
-}
-
-json objects_json(const World& world, const std::vector<RegionTerm>& terms) {
-  json list = json::array();
-  for (const auto& term : terms)
-    list.push_back({{"object", term.object}, {"name", world.scene.objects[term.object].name}, {"ms", term.predicted_ms}});
-  return list;
-}
-
-// Originals that are still drawn in a CPV.
-std::vector<RegionTerm> drawn_terms(const Subdivision& subdivision, const Cpv& cpv, const Placement& placement,
-                                    const PlacementCpv& placed) {
-  std::vector<RegionTerm> drawn;
-  for (const auto& term : subdivision.terms_of(cpv)) {
-    const bool replaced = std::ranges::any_of(
-        placed.impostors, [&](std::uint32_t id) { return std::ranges::binary_search(placement.impostors[id].objects, term.object); });
-    if (!replaced) drawn.push_back(term);
-  }
-  return drawn;
 }
 
 // Index of the slowest CPV of each cell that has any.
@@ -90,6 +51,23 @@ struct CauseShares {
 };
 
 }  // namespace
+
+std::vector<RegionTerm> largest_terms(std::vector<RegionTerm> terms, std::size_t count) {
+  const auto larger = [](const RegionTerm& a, const RegionTerm& b) {
+    return a.predicted_ms != b.predicted_ms ? a.predicted_ms > b.predicted_ms : a.object < b.object;
+  };
+  const auto middle = terms.begin() + static_cast<std::ptrdiff_t>(std::min(count, terms.size()));
+  std::partial_sort(terms.begin(), middle, terms.end(), larger);
+  terms.erase(middle, terms.end());
+  return terms;
+}
+
+json objects_json(const World& world, const std::vector<RegionTerm>& terms) {
+  json list = json::array();
+  for (const auto& term : terms)
+    list.push_back({{"object", term.object}, {"name", world.scene.objects[term.object].name}, {"ms", term.predicted_ms}});
+  return list;
+}
 
 json heat_map_json(const Subdivision& subdivision, const Placement* placement, const TimeModel& model) {
   const auto after_ms = placement != nullptr ? after_per_cell(subdivision, *placement) : std::vector<double>();
@@ -130,27 +108,11 @@ json causes_json(const World& world, const Subdivision& subdivision, const TimeM
           {"objects", objects_json(world, largest_terms(std::move(objects), 20))}};
 }
 
-json unsolved_json(const World& world, const Subdivision& subdivision, const Placement& placement, const Selection& selection,
-                   const TimeModel& model, double budget_ms) {
-  std::map<std::uint32_t, double> residual_of;
-  for (const auto& shortfall : selection.summary.unmet) residual_of[shortfall.cpv] = shortfall.residual;
-  const double predicted_budget_ms = model.predicted_budget_ms(budget_ms);
-  json list = json::array();
-  for (std::uint32_t p = 0; p < placement.cpvs.size(); ++p) {
-    const PlacementCpv& placed = placement.cpvs[p];
-    if (placed.solved) continue;
-    const Cpv& cpv = subdivision.cpvs[p];
-    json entry = {{"cpv", p},
-                  {"region", region_name(subdivision, cpv)},
-                  {"bound_before_ms", placed.bound_before_ms},
-                  {"bound_after_ms", placed.bound_after_ms},
-                  {"blocking", objects_json(world, largest_terms(drawn_terms(subdivision, cpv, placement, placed), kNamedObjects))}};
-    const auto known = residual_of.find(p);
-    entry["residual_ms"] = known != residual_of.end() ? known->second : placed.bound_after_ms - budget_ms;
-    entry["lowest_budget_ms"] = known != residual_of.end() ? model.bound_ms(predicted_budget_ms + known->second) : placed.bound_after_ms;
-    list.push_back(std::move(entry));
-  }
-  return list;
+json gpu_bytes_json(const std::vector<Texture>& pages) {
+  std::uint64_t blocks = 0;
+  for (const auto& page : pages)
+    blocks += static_cast<std::uint64_t>((page.width + 3) / 4) * static_cast<std::uint64_t>((page.height + 3) / 4);
+  return {{"bc1", 8 * blocks}, {"bc3", 16 * blocks}, {"bc7", 16 * blocks}, {"etc2_rgb8a1", 8 * blocks}, {"etc2_rgba8", 16 * blocks}};
 }
 
 std::uint64_t peak_rss_bytes() {

@@ -1,13 +1,11 @@
-// Parts of metrics.json that need more than a copy: heat map, causes, unsolved regions. Units in the key names, as everywhere in that file.
+// Parts of metrics.json that need more than a copy: heat map, causes, bytes on a GPU. Units in the key names, as everywhere in that file.
 #pragma once
 
 #include <nlohmann/json.hpp>
 #include <vector>
 
 #include "estimation/time_model.h"
-#include "placement/candidates/candidates.h"
 #include "placement/runtime/placement.h"
-#include "placement/select/selection_problem.h"
 #include "placement/view_space/subdivision.h"
 #include "server/job/world.h"
 
@@ -20,10 +18,14 @@ namespace standin {
 /// summed over these regions.
 [[nodiscard]] nlohmann::json causes_json(const World& world, const Subdivision& subdivision, const TimeModel& model);
 
-/// One entry per CPV that is not solved: its region, the residual of its best set of disjoint candidates, the objects that make it so, and
-/// the lowest budget that would do.
-[[nodiscard]] nlohmann::json unsolved_json(const World& world, const Subdivision& subdivision, const Placement& placement,
-                                           const Selection& selection, const TimeModel& model, double budget_ms);
+/// The `count` largest terms, largest first; ties by object id.
+[[nodiscard]] std::vector<RegionTerm> largest_terms(std::vector<RegionTerm> terms, std::size_t count);
+/// [{object, name, ms}]
+[[nodiscard]] nlohmann::json objects_json(const World& world, const std::vector<RegionTerm>& terms);
+
+/// Bytes of the atlas pages in each block-compressed format a GPU may hold them in: blocks of 4 x 4 texels, without mip levels. Computed
+/// from the pages' sizes; nothing is compressed.
+[[nodiscard]] nlohmann::json gpu_bytes_json(const std::vector<Texture>& pages);
 
 [[nodiscard]] std::uint64_t peak_rss_bytes();
 

@@ -60,6 +60,7 @@ function memorySection({ metrics, impostors }) {
   const rows = [
     ["textures, with gutters (the objective)", bytes(memory.texture_bytes)], ["geometry", bytes(memory.geometry_bytes)],
     ["unused space in the atlases", bytes(memory.atlas_padding_bytes)], ["total", bytes(memory.total_bytes)],
+    ...Object.entries(memory.gpu_bytes || {}).map(([format, value]) => [`atlases as ${format.toUpperCase().replace("_", " ")} on a GPU (computed from their size)`, bytes(value)]),
     ["lower bound: no choice of these candidates needs less", bytes(bound.memory_lower_bound_bytes)],
     [isNumber(bound.gap) ? "gap to the lower bound" : "gap to the lower bound, over estimated costs", percent(gap)],
   ].filter(([, value]) => value !== NONE);
@@ -170,9 +171,10 @@ function blockingText(blocking) {
   return (blocking || []).map((entry) => `${entry.name || `object ${entry.object}`}${isNumber(entry.ms) ? ` (${milliseconds(entry.ms)})` : ""}`).join(", ") || NONE;
 }
 
-/// metrics.unsolved: [{cpv, bound_before_ms, lowest_budget_ms, residual_ms, blocking: [{object, name, ms}], region}].
+/// metrics.unsolved: the worst, worst first: [{cpv, bound_before_ms, lowest_budget_ms, residual_ms, blocking: [{object, name, ms}], region}];
+/// metrics.unsolved_by_object: all: [{object, name, regions, worst_ms}].
 function unsolvedSection({ metrics }) {
-  const unsolved = metrics.unsolved || [];
+  const unsolved = metrics.unsolved || [], all = field(metrics, "cpv.unsolved") || unsolved.length, byObject = metrics.unsolved_by_object || [];
   if (unsolved.length === 0) return null;
   const columns = [
     { title: "region", number: true, text: (row) => String(row.cpv ?? NONE) }, { title: "where", text: (row) => row.region || NONE },
@@ -182,9 +184,15 @@ function unsolvedSection({ metrics }) {
     { title: "because of", text: (row) => blockingText(row.blocking) },
   ];
   const lead = "In these regions no set of impostors keeps the frame within the budget: the objects named are too near, or too deep, for an impostor. Raise the budget, leave the place out of the view space, or simplify or split these objects.";
-  const worst = [...unsolved].sort((a, b) => (b.lowest_budget_ms || 0) - (a.lowest_budget_ms || 0));
-  return section("unsolved", "Regions without a solution", lead, table(columns, worst.slice(0, 200), "Unsolved regions"),
-    worst.length > 200 ? element("p", { class: "soft" }, `The worst 200 of ${count(worst.length)}; all are in placement.json.`) : null);
+  const causes = [
+    { title: "object", text: (row) => row.name || `object ${row.object}` },
+    { title: "regions where it costs most", number: true, text: (row) => count(row.regions) },
+    { title: "at most", number: true, text: (row) => milliseconds(row.worst_ms) },
+  ];
+  return section("unsolved", "Regions without a solution", lead,
+    byObject.length > 0 ? table(causes, byObject.slice(0, 20), "What makes them so") : null,
+    unsolved.length < all ? element("p", { class: "soft" }, `The worst ${count(unsolved.length)} of ${count(all)}; all are in placement.json.`) : null,
+    table(columns, unsolved, "Unsolved regions"));
 }
 
 function leftOutSection({ metrics }) {

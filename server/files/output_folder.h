@@ -1,4 +1,4 @@
-// Results appear whole or not at all: files are written beside their place and renamed.
+// A result folder appears whole or not at all.
 #pragma once
 
 #include <filesystem>
@@ -7,14 +7,8 @@
 
 namespace standin {
 
-/// Throws Failure(kFileMissing) naming the file where it cannot be read.
-[[nodiscard]] std::string read_file(const std::filesystem::path& file);
-/// Writes beside `file`, then renames. Throws Failure(kInternal) where the folder cannot be written.
-void write_file(const std::filesystem::path& file, std::string_view bytes);
-/// Hex SHA-256.
-[[nodiscard]] std::string sha256_hex(std::string_view bytes);
-
-/// A result folder that is filled in a staging folder beside it and takes its place at commit(); an uncommitted one leaves no trace.
+/// Filled in a staging folder beside it, takes its place at commit(); an uncommitted one leaves no trace. What killed processes left behind
+/// is swept away by the next job that is to write the same folder.
 class OutputFolder {
  public:
   /// `job`: fingerprint of the job (one line). A folder that is not empty must hold a result of the same job, or Failure(kOutputOccupied)

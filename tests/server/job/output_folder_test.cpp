@@ -1,13 +1,15 @@
 // Results appear whole or not at all.
-#include "server/files/atomic_file.h"
+#include "server/files/output_folder.h"
 
 #include <gtest/gtest.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
 
 #include "render/base/error.h"
+#include "render/base/staged_file.h"
 
 namespace standin {
 namespace {
@@ -20,6 +22,12 @@ class OutputFolderTest : public testing::Test {
   ~OutputFolderTest() override { fs::remove_all(root_); }
 
   [[nodiscard]] std::size_t entries() const { return static_cast<std::size_t>(std::distance(fs::directory_iterator(root_), {})); }
+
+  void commit_result() const {
+    OutputFolder output(folder_, "job 1");
+    output.write("a.txt", "alpha");
+    output.commit();
+  }
 
   fs::path root_ = fs::temp_directory_path() / ("standin_output_" + std::to_string(::getpid()));
   fs::path folder_ = root_ / "result";
@@ -71,19 +79,46 @@ TEST_F(OutputFolderTest, TheSameJobReplacesItsResultWhole) {
   EXPECT_EQ(entries(), 1U);
 }
 
-TEST_F(OutputFolderTest, WriteFileReplacesAndReadFileNamesWhatIsMissing) {
-  const fs::path file = root_ / "x";
-  write_file(file, "1");
-  write_file(file, "22");
-  EXPECT_EQ(read_file(file), "22");
-  EXPECT_EQ(entries(), 1U);
-  EXPECT_THROW((void)read_file(root_ / "y"), Failure);
-  EXPECT_THROW((void)read_file(root_), Failure);
-  EXPECT_THROW(write_file(root_ / "no" / "such" / "folder", "1"), Failure);
+// A process that has come and gone.
+pid_t dead_process() {
+  const pid_t child = ::fork();
+  if (child == 0) ::_exit(0);
+  ::waitpid(child, nullptr, 0);
+  return child;
 }
 
-TEST(Sha256, KnownAnswer) {  // FIPS 180-2, appendix B.1
-  EXPECT_EQ(sha256_hex("abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+TEST_F(OutputFolderTest, SweepsWhatKilledProcessesLeftAndNothingElse) {
+  commit_result();
+  const auto stage = [&](const std::string& name) { fs::create_directories(root_ / name / "inside"); };
+  const std::string dead = std::to_string(dead_process());
+  stage("result.partial-" + dead);
+  stage("result.old-" + dead);
+  stage("other.partial-" + dead);
+  stage("result.partial-" + dead + "x");
+  stage("result.partial-1");  // init runs
+  commit_result();
+  EXPECT_FALSE(fs::exists(root_ / ("result.partial-" + dead)));
+  EXPECT_FALSE(fs::exists(root_ / ("result.old-" + dead)));
+  EXPECT_TRUE(fs::exists(root_ / ("other.partial-" + dead)));
+  EXPECT_TRUE(fs::exists(root_ / ("result.partial-" + dead + "x")));
+  EXPECT_TRUE(fs::exists(root_ / "result.partial-1"));
+  EXPECT_EQ(entries(), 4U);
+}
+
+TEST_F(OutputFolderTest, AResultWhoseReplacementWasKilledHalfwayComesBack) {
+  commit_result();
+  fs::rename(folder_, root_ / ("result.old-" + std::to_string(dead_process())));
+  { OutputFolder(folder_, "job 1"); }
+  EXPECT_EQ(read_file(folder_ / "a.txt"), "alpha");
+  EXPECT_EQ(entries(), 1U);
+}
+
+TEST_F(OutputFolderTest, ATrailingSlashNamesTheSameFolder) {
+  OutputFolder output(folder_ / "", "job 1");
+  EXPECT_EQ(entries(), 1U);
+  output.commit();
+  EXPECT_TRUE(fs::exists(folder_ / ".standin-job"));
+  EXPECT_EQ(entries(), 1U);
 }
 
 }  // namespace

@@ -1,0 +1,12 @@
+// Fingerprints of files: scenes, targets and jobs are named by their SHA-256.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace standin {
+
+/// Lower-case hex. Throws Failure(kInternal) where OpenSSL offers no SHA-256.
+[[nodiscard]] std::string sha256_hex(std::string_view bytes);
+
+}  // namespace standin
