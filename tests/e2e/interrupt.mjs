@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import test from "node:test";
-import { city, scratch, smallJob, start, tracesOf } from "./standin.mjs";
+import { city, expectExit, scratch, smallJob, start, tracesOf } from "./standin.mjs";
 
 const folder = scratch();
 const kLimit_ms = 2000;
@@ -43,6 +43,15 @@ for (const [stage, longer] of Object.entries(kStages)) {
     assert.deepEqual(tracesOf(out), []);
   });
 }
+
+test("what a killed job leaves behind is swept away by the next one", async () => {
+  const out = join(folder, "killed");
+  const end = await interruptIn("visibility", "SIGKILL", place(out, ...kStages.visibility));
+  assert.equal(end.signal, "SIGKILL");
+  assert.equal(tracesOf(out).length, 1, "its staging folder");
+  expectExit(0, "survey", city, ...smallJob, "-o", out);
+  assert.deepEqual(tracesOf(out), ["killed"]);
+});
 
 test("SIGTERM ends it the same way", async () => {
   const out = join(folder, "terminated");
