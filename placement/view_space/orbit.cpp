@@ -1,8 +1,11 @@
 // The orbit view space: the shell between two distances from the scene's centre, as cubes of the leaf grid.
 //
 // Cubes that reach inside the inner sphere are halved and their parts beyond it dropped, so that cells keep off the scene.
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
+#include "placement/view_space/cell_boxes.h"
 #include "placement/view_space/number_text.h"
 #include "placement/view_space/view_space.h"
 #include "render/base/error.h"
@@ -35,15 +38,17 @@ void add_parts(const Shell& shell, const DyadicGrid& grid, const CellKey& key, i
   for (int c = 0; c < 8; ++c) add_parts(shell, grid, key.child(c), halvings - 1, boxes);
 }
 
-// Doubled until the ball that holds every cube touching the shell has no more cubes' volumes than leaves allowed.
-double leaf_side(const Shell& shell, double wanted_m, std::uint64_t max_leaves) {
-  const auto most_leaves = [&](double side) {
-    const double radius = shell.far_m / side + std::sqrt(3.0);
-    return 4.19 * radius * radius * radius;
-  };
-  double side = wanted_m;
-  while (most_leaves(side) > static_cast<double>(max_leaves) && side < 2.0 * shell.far_m) side *= 2.0;
-  return side;
+// A bound from above: the cubes in the ball that holds every cube touching the shell.
+double most_leaves(const Shell& shell, double side_m) {
+  const double radius = shell.far_m / side_m + std::sqrt(3.0);
+  return 4.19 * radius * radius * radius;
+}
+
+// Doubled while there may be more leaves than allowed, up to `largest_m`: larger ones would reach into the scene.
+double leaf_side(const Shell& shell, double wanted_m, double largest_m, std::uint64_t max_leaves) {
+  double side_m = wanted_m;
+  while (most_leaves(shell, side_m) > static_cast<double>(max_leaves) && side_m < largest_m) side_m = std::min(2.0 * side_m, largest_m);
+  return side_m;
 }
 
 }  // namespace
@@ -56,7 +61,7 @@ ViewSpace make_orbit_view_space(const Scene& scene, const ViewSpaceOptions& opti
                                             number_text(options.orbit_far) + " bounding radii");
   const Shell shell{scene.bounds.centre(), options.orbit_near * radius_m, options.orbit_far * radius_m};
   const double wanted_m = std::min(options.leaf_m, radius_m);
-  const double side_m = leaf_side(shell, wanted_m, options.max_leaves);
+  const double side_m = leaf_side(shell, wanted_m, radius_m, options.max_leaves);
 
   // One cube more than needed on the upper side when the division is inexact; the shell decides.
   const int level = static_cast<int>(std::ceil(std::log2(2.0 * shell.far_m / side_m) + 1e-9));
@@ -69,12 +74,17 @@ ViewSpace make_orbit_view_space(const Scene& scene, const ViewSpaceOptions& opti
 
   ViewSpaceOptions laid = options;
   laid.leaf_m = side_m;
+  laid.max_leaves = std::numeric_limits<std::uint64_t>::max();  // settled above
   std::string why = "orbit: from " + number_text(shell.near_m) + " to " + number_text(shell.far_m) + " m around the scene's centre";
   if (wanted_m < options.leaf_m) why += ", leaves no larger than its bounding radius";
   ViewSpace space = finish_view_space(ViewSpaceKind::kOrbit, std::move(why), std::move(boxes), laid);
   if (side_m > wanted_m)
     space.left_out.insert(space.left_out.begin(), "leaves of " + number_text(side_m) + " m instead of " + number_text(wanted_m) +
                                                       " m: more than " + std::to_string(options.max_leaves) + " otherwise");
+  const std::size_t leaves = CellBoxes(space).leaves().size();
+  if (leaves > options.max_leaves)
+    space.left_out.push_back("no limit of " + std::to_string(options.max_leaves) + " leaves: there are " + std::to_string(leaves) +
+                             ", since leaves larger than the bounding radius would reach into the scene");
   return space;
 }
 

@@ -18,10 +18,10 @@ namespace {
 constexpr std::uint64_t kShares = 76;
 constexpr std::uint64_t kRaysPerShare = 8;
 static_assert(kRaysPerShare * kShares * kShares >= 46'100, "ln 0.01 / ln(1 - 1e-4): what certifies a share of 1e-4 at 99 %");
-constexpr std::uint64_t kAimedRays = 2;        // per object and round
+constexpr std::uint64_t kAimedRays = 2;       // per object and round
 constexpr std::uint64_t kExploringRays = 64;  // per object found
-constexpr double kExploredBounds = 2.0;        // times the found object's size
-constexpr double kExploredRegion = 0.2;        // times the region's
+constexpr double kExploredBounds = 2.0;       // times the found object's size
+constexpr double kExploredRegion = 0.2;       // times the region's
 
 Vec3 random_point(Rng& rng, const Box& box) {
   const double x = rng.uniform();
@@ -30,12 +30,38 @@ Vec3 random_point(Rng& rng, const Box& box) {
   return box.min + Vec3(x, y, z) * box.size();
 }
 
-/// Uniform over share (i, j) of shares x shares equal ones of the sphere (Archimedes).
-Vec3 random_direction(Rng& rng, std::uint64_t i, std::uint64_t j, std::uint64_t shares) {
-  const double along = 2.0 * (static_cast<double>(i) + rng.uniform()) / static_cast<double>(shares) - 1.0;
-  const double turn = 2.0 * std::numbers::pi * (static_cast<double>(j) + rng.uniform()) / static_cast<double>(shares);
-  const double radius = std::sqrt(std::max(0.0, 1.0 - along * along));
-  return {radius * std::cos(turn), along, radius * std::sin(turn)};
+/// Directions that can lead from a region into the scene: all, or those of a cone where the region lies clear of it.
+struct DirectionCap {
+  Vec3 axis{0.0, 1.0, 0.0};
+  Vec3 right{1.0, 0.0, 0.0};
+  Vec3 up{0.0, 0.0, 1.0};
+  double height = 2.0;  // 1 - cos of the half angle
+
+  DirectionCap(const Box& region, const Box& scene) {
+    const Vec3 way = scene.centre() - region.centre();
+    const double distance_m = glm::length(way);
+    const double reach_m = 0.5 * (region.diagonal() + scene.diagonal()) * (1.0 + 1e-9);
+    if (reach_m >= distance_m) return;
+    axis = way / distance_m;
+    right = glm::normalize(glm::cross(axis, std::abs(axis.y) < 0.9 ? Vec3(0.0, 1.0, 0.0) : Vec3(1.0, 0.0, 0.0)));
+    up = glm::cross(right, axis);
+    height = 1.0 - std::sqrt(1.0 - (reach_m / distance_m) * (reach_m / distance_m));
+  }
+  [[nodiscard]] double share_of_sphere() const { return 0.5 * height; }
+
+  /// Uniform over share (i, j) of shares x shares equal ones (Archimedes).
+  [[nodiscard]] Vec3 random_direction(Rng& rng, std::uint64_t i, std::uint64_t j, std::uint64_t shares) const {
+    const double along = 1.0 - height * (static_cast<double>(i) + rng.uniform()) / static_cast<double>(shares);
+    const double turn = 2.0 * std::numbers::pi * (static_cast<double>(j) + rng.uniform()) / static_cast<double>(shares);
+    const double radius = std::sqrt(std::max(0.0, 1.0 - along * along));
+    return along * axis + radius * (std::cos(turn) * right + std::sin(turn) * up);
+  }
+};
+
+/// Side of a whole batch: as many rays as the cap's share of the sphere asks for, but no fewer than a sixteenth, so that what covers little
+/// of the sphere is still seen well.
+std::uint64_t whole_batch(const DirectionCap& cap) {
+  return static_cast<std::uint64_t>(std::ceil(static_cast<double>(kShares) * std::sqrt(std::max(cap.share_of_sphere(), 1.0 / 16.0))));
 }
 
 bool meet(const Box& a, const Box& b) {
@@ -49,6 +75,7 @@ class RegionSampler {
       : scene_(scene),
         raytracer_(raytracer),
         region_(region),
+        cap_(region, scene.bounds),
         budget_(budget),
         rng_(options.seed, stream),
         rays_left_(options.rays),
@@ -57,13 +84,14 @@ class RegionSampler {
   }
 
   VisibleSet sample() {
-    std::uint64_t shares = kShares;
+    const std::uint64_t whole = whole_batch(cap_);
+    std::uint64_t shares = whole;
     bool certified = false;
     while (!certified && shares > 0) {
       shoot_aimed(rays_left_ / 2);
-      shares = std::min(kShares, static_cast<std::uint64_t>(std::sqrt(static_cast<double>(rays_left_ / kRaysPerShare))));
+      shares = std::min(whole, static_cast<std::uint64_t>(std::sqrt(static_cast<double>(rays_left_ / kRaysPerShare))));
       const bool found_new = shoot_uniform(shares);
-      certified = shares == kShares && !found_new;
+      certified = shares == whole && !found_new;
     }
     return summary(certified);
   }
@@ -107,7 +135,7 @@ class RegionSampler {
       budget_.check();
       for (std::uint64_t ray = 0; ray < kRaysPerShare * shares; ++ray) {
         const Vec3 position = random_point(rng_, region_);
-        const auto hit = raytracer_.nearest(position, random_direction(rng_, i, ray / kRaysPerShare, shares));
+        const auto hit = raytracer_.nearest(position, cap_.random_direction(rng_, i, ray / kRaysPerShare, shares));
         if (!hit) continue;
         const bool is_new = !is_found(hit->object);
         ++uniform_hits_[hit->object];
@@ -144,7 +172,8 @@ class RegionSampler {
       if (is_found(object)) set.objects.push_back(object);
       if (!confirmed_[object] && uniform_hits_[object] == 1) ++singletons;
     }
-    set.missed_ray_share = uniform_rays_ > 0 ? static_cast<double>(singletons) / static_cast<double>(uniform_rays_) : 1.0;
+    set.missed_ray_share =
+        uniform_rays_ > 0 ? cap_.share_of_sphere() * static_cast<double>(singletons) / static_cast<double>(uniform_rays_) : 1.0;
     set.certified = certified;
     return set;
   }
@@ -152,6 +181,7 @@ class RegionSampler {
   const Scene& scene_;
   const Raytracer& raytracer_;
   const Box& region_;
+  DirectionCap cap_;
   const WorkBudget& budget_;
   Rng rng_;
   std::uint64_t rays_left_;

@@ -6,6 +6,7 @@
 #include <glm/trigonometric.hpp>
 #include <thread>
 
+#include "placement/view_space/cell_boxes.h"
 #include "render/base/error.h"
 #include "render/visibility/visible_set.h"
 
@@ -60,18 +61,23 @@ ViewSpace make_view_space(const JobSpec& spec, const Scene& scene, const Raytrac
     return make_box_view_space(spec.boxes, options);
   }
   if (spec.view_space.starts_with("path:")) return make_path_view_space(read_path(spec.view_space.substr(5)), spec.path_radius_m, options);
-  std::string why = "asked for";
   ViewSpaceKind kind = spec.view_space == "walk" ? ViewSpaceKind::kWalk : ViewSpaceKind::kOrbit;
-  if (spec.view_space == "auto") kind = default_view_space(scene, why);
+  std::string why;
+  const ViewSpaceKind fitting = default_view_space(scene, why);
+  if (spec.view_space == "auto") kind = fitting;
   ViewSpace space = kind == ViewSpaceKind::kWalk ? make_walk_view_space(scene, raytracer, options) : make_orbit_view_space(scene, options);
-  space.why = why;
+  if (spec.view_space == "auto")
+    space.why = why + "; " + space.why;
+  else
+    space.why = "asked for; " + space.why + (kind == fitting ? "" : "; auto would have chosen " + why);
   return space;
 }
 
 std::vector<Box> boxes_of(const ViewSpace& space, const std::vector<CellKey>& keys) {
   std::vector<Box> boxes;
   boxes.reserve(keys.size());
-  for (const auto& key : keys) boxes.push_back(space.cell_box(key));
+  const CellBoxes cells(space);
+  for (const auto& key : keys) boxes.push_back(cells.cell_box(key));
   return boxes;
 }
 

@@ -47,12 +47,31 @@ TEST(Orbit, EveryPointOfTheShellIsInABox) {
   }
 }
 
+double leaf_side_of(const ViewSpace& space) {
+  return std::ldexp(space.root_side_m, -space.leaf_level);
+}
+
 TEST(Orbit, LeavesGrowBeyondTheLimitAndThatIsSaid) {
   ViewSpaceOptions options;
-  options.max_leaves = 1000;
+  options.leaf_m = 0.5;
   const ViewSpace space = make_orbit_view_space(one_cube(1.0, {0, 0, 0}), options);
-  EXPECT_LE(CellBoxes(space).leaves().size(), 1000U);
-  EXPECT_THAT(space.left_out, testing::ElementsAre(testing::HasSubstr("instead of 1.73205 m: more than 1000 otherwise")));
+  EXPECT_LE(CellBoxes(space).leaves().size(), 20'000U);
+  EXPECT_THAT(space.left_out, testing::ElementsAre(testing::HasSubstr("instead of 0.5 m: more than 20000 otherwise")));
+}
+
+TEST(Orbit, NoLimitMakesLeavesReachIntoTheScene) {
+  for (const double leaf_m : {0.5, 23.0}) {
+    ViewSpaceOptions options;
+    options.leaf_m = leaf_m;
+    options.max_leaves = 100;
+    const Scene scene = one_cube(1.0, {0, 0, 0});
+    const ViewSpace space = make_orbit_view_space(scene, options);
+    EXPECT_DOUBLE_EQ(leaf_side_of(space), std::sqrt(3.0));
+    const CellBoxes cells(space);
+    EXPECT_GT(cells.leaves().size(), 100U);
+    for (const CellKey& key : cells.leaves()) EXPECT_GT(distance(scene.bounds, cells.cell_box(key)), 0.5 * std::sqrt(3.0));
+    EXPECT_THAT(space.left_out.back(), testing::HasSubstr("would reach into the scene"));
+  }
 }
 
 TEST(Orbit, AnEmptySceneOrShellIsRefused) {

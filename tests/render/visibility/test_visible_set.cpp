@@ -124,6 +124,28 @@ TEST(VisibleSet, AWholeBatchWithoutAFindIsACertificate) {
   EXPECT_LE(missed, 1e-4);
 }
 
+// Seen from afar the scene covers a small part of the sphere: the missed share is of all directions nevertheless.
+TEST(VisibleSet, LooksOnlyTowardsASceneThatIsFarAway) {
+  const Scene scene = scattered_boxes(76, 2000);
+  const Raytracer raytracer(scene);
+  for (const Vec3& way : {Vec3(1200, 300, 0), Vec3(-40, 900, 30), Vec3(0, -2000, 1)}) {
+    const Box region{way - 30.0, way + 30.0};
+    const auto set = sample_visible_sets(scene, raytracer, {region}, VisibilityOptions{}, 1, WorkBudget{}).front();
+    EXPECT_TRUE(set.certified);
+    EXPECT_LE(set.missed_ray_share, 1e-4);
+    Rng rng(77);
+    int outside = 0;
+    constexpr int kRays = 50'000;
+    for (int i = 0; i < kRays; ++i) {
+      const auto random_in = [&](const Box& box) { return box.min + Vec3(rng.uniform(), rng.uniform(), rng.uniform()) * box.size(); };
+      const Vec3 position = random_in(region);
+      const auto hit = raytracer.nearest(position, glm::normalize(random_in(scene.bounds) - position));
+      if (hit && !std::binary_search(set.objects.begin(), set.objects.end(), hit->object)) ++outside;
+    }
+    EXPECT_LE(outside, kRays / 200);  // what the cone holds beside the scene makes its share larger
+  }
+}
+
 TEST(VisibleSet, LessThanAWholeBatchCertifiesNothing) {
   EXPECT_FALSE(sets_of(wall_and_box(), {Box{Vec3(-1.0), Vec3(1.0)}}, 46'000).front().certified);
   EXPECT_TRUE(sets_of(wall_and_box(), {Box{Vec3(-1.0), Vec3(1.0)}}, 200'000).front().certified);
