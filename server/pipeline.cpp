@@ -232,7 +232,7 @@ void choose_and_bake(const Surveyed& job, const JobSpec& spec, Placed& placed, S
   });
   name_directions_left_out(world, placed.candidates, spec, clock);
   name_texturing_left_out(world.scene, spec, clock);
-  placed.selected = select_and_bake(world, placed.subdivision, placed.candidates, model, spec.budget_ms, spec, clock, budget);
+  placed.selected = select_and_bake(world, placed.subdivision, placed.candidates, job.sizes, model, spec.budget_ms, spec, clock, budget);
   name_culling_left_out(placed.selected.impostors, spec, clock);
 }
 

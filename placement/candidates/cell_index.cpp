@@ -12,6 +12,8 @@ CellIndex::CellIndex(const Hierarchy& hierarchy, const Subdivision& subdivision)
     if (range.end == 0) range.begin = p;
     range.end = p + 1;
   }
+  if (!subdivision.cells.empty())
+    leaf_level_ = std::ranges::min(subdivision.cells, {}, [](const Cell& cell) { return cell.key.level; }).key.level;
   collect_visible();
   collect_cells();
 }

@@ -24,6 +24,8 @@ class CellIndex {
  public:
   CellIndex(const Hierarchy& hierarchy, const Subdivision& subdivision);
 
+  /// Of the view space's leaf cubes, which hot cells halve: that of the coarsest cells.
+  [[nodiscard]] int leaf_level() const { return leaf_level_; }
   /// The cell's CPVs, contiguous in Subdivision::cpvs.
   [[nodiscard]] IdRange cpvs(std::uint32_t cell) const { return cpvs_[cell]; }
   /// Ranks of the objects visible from the cell, ascending.
@@ -44,6 +46,7 @@ class CellIndex {
 
   const Hierarchy& hierarchy_;
   const Subdivision& subdivision_;
+  int leaf_level_ = 0;
   std::vector<IdRange> cpvs_;                  // per cell
   std::vector<std::uint64_t> visible_offset_;  // per cell + 1
   std::vector<std::uint32_t> visible_;

@@ -14,23 +14,23 @@ namespace {
 
 constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 
-/// A cell that lies in a pyramid of the grid.
+/// A group that lies in a pyramid of the grid.
 struct Held {
   std::uint32_t pyramid = 0;  // direction * apex count + apex
-  double near_m = 0.0;        // least distance of the cell along the axis
-  std::uint32_t cell = 0;
+  double near_m = 0.0;        // least distance of the group along the axis
+  std::uint32_t group = 0;
 };
 
-/// What a cell needs of a pyramid about `apex` with the axes of `frame`.
+/// What a group needs of a pyramid about `apex` with the axes of `frame`.
 struct Need {
   double tan_half = 0.0;
   double near_m = std::numeric_limits<double>::infinity();
 };
 
-Need need_of(const Box& cell, const Vec3& apex, const Shaft& frame) {
+Need need_of(const Box& box, const Vec3& apex, const Shaft& frame) {
   Need need;
   for (int i = 0; i < 8; ++i) {
-    const Vec3 from_apex = cell.corner(i) - apex;
+    const Vec3 from_apex = box.corner(i) - apex;
     const double along_m = glm::dot(from_apex, frame.axis);
     if (along_m <= 0.0) return {std::numeric_limits<double>::infinity(), 0.0};
     const double aside_m = std::max(std::abs(glm::dot(from_apex, frame.right)), std::abs(glm::dot(from_apex, frame.up)));
@@ -40,15 +40,15 @@ Need need_of(const Box& cell, const Vec3& apex, const Shaft& frame) {
   return need;
 }
 
-/// Far cells first within each pyramid.
-std::vector<Held> held_cells(const Vec3& apex, std::span<const std::uint32_t> cells, const Subdivision& subdivision,
-                             const DirectionGrid& grid, std::span<const double> tan_half) {
+/// Far groups first within each pyramid.
+std::vector<Held> held_groups(const Vec3& apex, std::span<const CellGroup> groups, const DirectionGrid& grid,
+                              std::span<const double> tan_half) {
   const double widest = *std::max_element(tan_half.begin(), tan_half.end());
   const double reach_rad = std::atan(std::numbers::sqrt2 * widest);  // from the axis to the pyramid's edge
   std::vector<Held> held;
   std::vector<std::uint32_t> directions;
-  for (const std::uint32_t cell : cells) {
-    const Box& box = subdivision.cells[cell].box;
+  for (std::uint32_t group = 0; group < groups.size(); ++group) {
+    const Box& box = groups[group].box;
     const Vec3 towards = box.centre() - apex;
     const double distance_m = glm::length(towards);
     if (distance_m <= 0.0) continue;
@@ -57,26 +57,26 @@ std::vector<Held> held_cells(const Vec3& apex, std::span<const std::uint32_t> ce
     for (const std::uint32_t direction : directions) {
       const Need need = need_of(box, apex, grid.frame(direction));
       for (std::uint32_t a = 0; a < tan_half.size(); ++a)
-        if (need.tan_half <= tan_half[a]) held.push_back({direction * static_cast<std::uint32_t>(tan_half.size()) + a, need.near_m, cell});
+        if (need.tan_half <= tan_half[a]) held.push_back({direction * static_cast<std::uint32_t>(tan_half.size()) + a, need.near_m, group});
     }
   }
   std::sort(held.begin(), held.end(), [](const Held& a, const Held& b) {
     if (a.pyramid != b.pyramid) return a.pyramid < b.pyramid;
-    return a.near_m != b.near_m ? a.near_m > b.near_m : a.cell < b.cell;
+    return a.near_m != b.near_m ? a.near_m > b.near_m : a.group < b.group;
   });
   return held;
 }
 
-void append_set(std::span<const Held> held, std::vector<CellSet>& sets) {
+void append_set(std::span<const Held> held, std::vector<GroupSet>& sets) {
   if (held.size() < 2) return;
-  CellSet set;
-  for (const Held& h : held) set.push_back(h.cell);
+  GroupSet set;
+  for (const Held& h : held) set.push_back(h.group);
   std::sort(set.begin(), set.end());
   sets.push_back(std::move(set));
 }
 
-/// All cells of one pyramid, then those beyond each doubling of the cluster's diagonal.
-void append_nested(std::span<const Held> held, double diagonal_m, std::vector<CellSet>& sets) {
+/// All groups of one pyramid, then those beyond each doubling of the cluster's diagonal.
+void append_nested(std::span<const Held> held, double diagonal_m, std::vector<GroupSet>& sets) {
   append_set(held, sets);
   const double unit_m = std::max(diagonal_m, 1e-6);
   while (held.size() >= 2) {
@@ -132,13 +132,27 @@ void DirectionGrid::append_near(const Vec3& unit, double angle_rad, std::vector<
   }
 }
 
-std::vector<CellSet> shaft_cell_sets(const Box& cluster, std::span<const std::uint32_t> cells, const Subdivision& subdivision,
-                                     const DirectionGrid& grid, std::span<const double> apex_deg) {
-  std::vector<CellSet> sets;
-  if (cells.size() < 2 || apex_deg.empty()) return sets;
+std::vector<CellGroup> group_cells(std::span<const std::uint32_t> cells, const Subdivision& subdivision, int level) {
+  std::map<CellKey, CellGroup> below;
+  for (const std::uint32_t cell : cells) {
+    CellKey key = subdivision.cells[cell].key;
+    while (key.level > level) key = key.parent();
+    CellGroup& group = below[key];
+    group.box.extend(subdivision.cells[cell].box);
+    group.cells.push_back(cell);
+  }
+  std::vector<CellGroup> groups;
+  for (auto& [key, group] : below) groups.push_back(std::move(group));
+  return groups;
+}
+
+std::vector<GroupSet> shaft_group_sets(const Box& cluster, std::span<const CellGroup> groups, const DirectionGrid& grid,
+                                       std::span<const double> apex_deg) {
+  std::vector<GroupSet> sets;
+  if (groups.size() < 2 || apex_deg.empty()) return sets;
   std::vector<double> tan_half;
   for (const double apex : apex_deg) tan_half.push_back(std::tan(0.5 * apex * kRadPerDeg));
-  const auto held = held_cells(cluster.centre(), cells, subdivision, grid, tan_half);
+  const auto held = held_groups(cluster.centre(), groups, grid, tan_half);
   for (std::size_t begin = 0; begin < held.size();) {
     std::size_t end = begin;
     while (end < held.size() && held[end].pyramid == held[begin].pyramid) ++end;
@@ -148,11 +162,18 @@ std::vector<CellSet> shaft_cell_sets(const Box& cluster, std::span<const std::ui
   return sets;
 }
 
-std::vector<CellSet> box_cell_sets(std::span<const std::uint32_t> cells, const Subdivision& subdivision) {
+CellSet cells_of(const GroupSet& set, std::span<const CellGroup> groups) {
+  CellSet cells;
+  for (const std::uint32_t group : set) cells.insert(cells.end(), groups[group].cells.begin(), groups[group].cells.end());
+  std::sort(cells.begin(), cells.end());
+  return cells;
+}
+
+std::vector<CellSet> box_cell_sets(std::span<const std::uint32_t> cells, const Subdivision& subdivision, int coarsest_level) {
   std::map<CellKey, CellSet> below;
   for (const std::uint32_t cell : cells) {
     CellKey key = subdivision.cells[cell].key;
-    for (below[key].push_back(cell); key.level > 0;) below[key = key.parent()].push_back(cell);
+    for (below[key].push_back(cell); key.level > coarsest_level;) below[key = key.parent()].push_back(cell);
   }
   std::vector<CellSet> sets;
   for (auto& [key, set] : below)

@@ -1,8 +1,10 @@
 // Which sets of cells a cluster's candidates may serve (thesis 5.6).
 //
-// Shafts: a pyramid about the cluster's centre in one of the grid's directions, with one of the apex angles, holds some cells; minimum
-// distances of 1, 2, 4 .. box diagonals give nested subsets, the far ones. We go from the cells to the directions that can hold them, so
-// the blind product of directions and distances is never formed. Boxes: the cells below each node of the view space's dyadic grid.
+// Shafts: a pyramid about the cluster's centre in one of the grid's directions, with one of the apex angles, holds some leaf cubes of the
+// view space; minimum distances of 1, 2, 4 .. box diagonals give nested subsets, the far ones. We go from the cubes to the directions that
+// can hold them, so the blind product of directions and distances is never formed. Cells finer than a leaf are gathered cube by cube:
+// pyramids see leaves alone, or a city's halved cells would be asked for in millions of combinations. Boxes: the cells below each node of
+// the view space's dyadic grid.
 #pragma once
 
 #include <cstdint>
@@ -34,9 +36,23 @@ class DirectionGrid {
   std::vector<Shaft> frames_;
 };
 
-/// Every set of two or more of `cells` that one view cell holds; may repeat. `cluster`: bounds of the node.
-[[nodiscard]] std::vector<CellSet> shaft_cell_sets(const Box& cluster, std::span<const std::uint32_t> cells, const Subdivision& subdivision,
-                                                   const DirectionGrid& grid, std::span<const double> apex_deg);
-[[nodiscard]] std::vector<CellSet> box_cell_sets(std::span<const std::uint32_t> cells, const Subdivision& subdivision);
+/// Cells that pyramids hold together.
+struct CellGroup {
+  Box box;  // of all cells
+  CellSet cells;
+};
+/// `cells` (ascending) by their ancestors of one level, in the order of these.
+[[nodiscard]] std::vector<CellGroup> group_cells(std::span<const std::uint32_t> cells, const Subdivision& subdivision, int level);
+
+using GroupSet = std::vector<std::uint32_t>;  // ascending
+
+/// Every set of two or more groups that one pyramid holds; may repeat. `cluster`: bounds of the node.
+[[nodiscard]] std::vector<GroupSet> shaft_group_sets(const Box& cluster, std::span<const CellGroup> groups, const DirectionGrid& grid,
+                                                     std::span<const double> apex_deg);
+[[nodiscard]] CellSet cells_of(const GroupSet& set, std::span<const CellGroup> groups);
+
+/// Every set of two or more of `cells` (ascending) below a node of the dyadic grid, from `coarsest_level` down; may repeat.
+[[nodiscard]] std::vector<CellSet> box_cell_sets(std::span<const std::uint32_t> cells, const Subdivision& subdivision,
+                                                 int coarsest_level = 0);
 
 }  // namespace standin

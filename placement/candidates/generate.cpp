@@ -18,9 +18,11 @@ class NodeCandidates {
  public:
   NodeCandidates(const DraftContext& context, std::uint32_t node) : context_(context), node_(node) {}
 
-  CandidateSet generate(const DirectionGrid& grid, const CandidateOptions& options) {
+  CandidateSet generate(const DirectionGrid& grid, int leaf_level, const CandidateOptions& options) {
     serve_single_cells();
-    for (const CellSet& cells : cell_sets(grid, options)) serve(cells);
+    const bool boxes = options.shape == CellShape::kBox;
+    serve_cubes(boxes ? 0 : leaf_level);
+    if (!boxes) serve_pyramids(grid, leaf_level, options.apex_deg);
     return std::move(set_);
   }
 
@@ -47,12 +49,24 @@ class NodeCandidates {
     }
   }
 
-  std::vector<CellSet> cell_sets(const DirectionGrid& grid, const CandidateOptions& options) {
+  void serve_cubes(int coarsest_level) {
+    for (const CellSet& cells : distinct(box_cell_sets(useful_cells(), context_.subdivision, coarsest_level))) serve(cells);
+  }
+
+  void serve_pyramids(const DirectionGrid& grid, int leaf_level, std::span<const double> apex_deg) {
+    const auto groups = group_cells(useful_cells(), context_.subdivision, leaf_level);
+    for (const GroupSet& set : distinct(shaft_group_sets(context_.hierarchy.nodes[node_].bounds, groups, grid, apex_deg)))
+      serve(cells_of(set, groups));
+  }
+
+  [[nodiscard]] CellSet useful_cells() const {
     CellSet cells;
     for (const UsefulCell& useful : useful_) cells.push_back(useful.cell);
-    auto sets = options.shape == CellShape::kBox
-                    ? box_cell_sets(cells, context_.subdivision)
-                    : shaft_cell_sets(context_.hierarchy.nodes[node_].bounds, cells, context_.subdivision, grid, options.apex_deg);
+    return cells;
+  }
+
+  template <class Set>
+  std::vector<Set> distinct(std::vector<Set> sets) {
     const std::size_t before = sets.size();
     std::sort(sets.begin(), sets.end());
     sets.erase(std::unique(sets.begin(), sets.end()), sets.end());
@@ -108,12 +122,16 @@ CandidateSet generate_candidates(const Scene& scene, const Hierarchy& hierarchy,
   const CellIndex index(hierarchy, subdivision);
   const DirectionGrid grid(options.direction_step_deg, options.every_direction);
   const DraftContext context{scene, hierarchy, subdivision, index, model, sizes, camera, quality, options.shape};
+  const int leaf_level = context.index.leaf_level();
   std::vector<CandidateSet> of_node(hierarchy.nodes.size());
   parallel_for(of_node.size(), options.threads, budget, [&](std::size_t node) {
-    of_node[node] = NodeCandidates(context, static_cast<std::uint32_t>(node)).generate(grid, options);
+    of_node[node] = NodeCandidates(context, static_cast<std::uint32_t>(node)).generate(grid, leaf_level, options);
   });
 
   CandidateSet all;
+  std::size_t count = 0;
+  for (const CandidateSet& set : of_node) count += set.candidates.size();
+  all.candidates.reserve(count);
   for (CandidateSet& set : of_node) {
     all.generated += set.generated;
     all.duplicates += set.duplicates;

@@ -8,6 +8,8 @@ namespace {
 
 constexpr double kPriorSamples = 0.05;  // weight of the default slopes
 
+constexpr double kCautious = 0.9;  // share of bakes that stay within a margin
+
 using Coefficients = std::array<double, 3>;
 
 double predicted_log(const Coefficients& b, const SizeInput& input) {
@@ -51,15 +53,24 @@ double log_quads(const SizeSample& sample) {
   return std::log(sample.baked.quads);
 }
 
-double median_held_out_error(std::span<const SizeSample> samples, const Coefficients& prior) {
-  std::vector<double> errors;
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    const double log_ratio = predicted_log(fit(samples, i, prior, log_bytes), samples[i].input) - log_bytes(samples[i]);
-    errors.push_back(std::abs(std::expm1(log_ratio)));
-  }
-  const auto middle = errors.begin() + static_cast<std::ptrdiff_t>(errors.size() / 2);
-  std::nth_element(errors.begin(), middle, errors.end());
-  return *middle;
+/// baked / predicted by the model of all other samples.
+template <class Target>
+std::vector<double> held_out_ratios(std::span<const SizeSample> samples, const Coefficients& prior, Target&& log_target) {
+  std::vector<double> ratios;
+  for (std::size_t i = 0; i < samples.size(); ++i)
+    ratios.push_back(std::exp(log_target(samples[i]) - predicted_log(fit(samples, i, prior, log_target), samples[i].input)));
+  return ratios;
+}
+
+double quantile(std::vector<double> values, double share) {
+  const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size()));
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
+
+double median_error(std::vector<double> ratios) {
+  for (double& ratio : ratios) ratio = std::abs(1.0 / ratio - 1.0);
+  return quantile(std::move(ratios), 0.5);
 }
 
 }  // namespace
@@ -94,7 +105,10 @@ SizeModel fit_sizes(std::span<const SizeSample> samples) {
   const SizeModel prior = model;
   model.log_bytes = fit(samples, samples.size(), prior.log_bytes, log_bytes);
   model.log_quads = fit(samples, samples.size(), prior.log_quads, log_quads);
-  model.median_error = median_held_out_error(samples, prior.log_bytes);
+  const auto bytes_ratios = held_out_ratios(samples, prior.log_bytes, log_bytes);
+  model.bytes_margin = std::max(1.0, quantile(bytes_ratios, kCautious));
+  model.quads_margin = std::max(1.0, quantile(held_out_ratios(samples, prior.log_quads, log_quads), kCautious));
+  model.median_error = median_error(bytes_ratios);
   model.bakes = static_cast<std::uint32_t>(samples.size());
   return model;
 }

@@ -118,17 +118,14 @@ void AntichainFinder::search_stages(std::span<const Serving> servings, std::uint
 
 Antichain AntichainFinder::evaluated(std::vector<Serving> chosen, std::uint32_t cpv) const {
   std::sort(chosen.begin(), chosen.end(), [](const Serving& a, const Serving& b) { return a.candidate < b.candidate; });
-  Antichain result;
   GainSum violation = 0.0L;
-  for (const Serving& s : chosen) result.candidates.push_back(s.candidate);
   for (std::uint32_t k = 0; k < problem_.stages; ++k) {
     GainSum sum = 0.0L;
     for (const Serving& s : chosen) sum += gain(s, k);
     const GainSum deficit = problem_.deficit[static_cast<std::size_t>(cpv) * problem_.stages + k];
     if (sum < deficit) violation += deficit - sum;
   }
-  result.violation = static_cast<double>(violation);
-  return result;
+  return {std::move(chosen), static_cast<double>(violation)};
 }
 
 }  // namespace standin

@@ -21,8 +21,8 @@ inline constexpr std::uint32_t kNoCandidate = UINT32_MAX;
 using GainSum = long double;
 
 struct Antichain {
-  std::vector<std::uint32_t> candidates;  // ascending ids
-  double violation = 0.0;                 // sum over stages of what is missing; 0 iff it meets the CPV
+  std::vector<Serving> members;  // by candidate id
+  double violation = 0.0;        // sum over stages of what is missing; 0 iff it meets the CPV
   [[nodiscard]] bool meets() const { return violation == 0.0; }
 };
 
@@ -31,7 +31,7 @@ class AntichainFinder {
  public:
   AntichainFinder(const SelectionProblem& problem, const TreeOrder& order) : problem_(problem), order_(order) {}
 
-  /// `servings`: of this CPV, by (rank, candidate id). Greatest gain (one stage) or least violation (several), ties to the larger cluster,
+  /// `servings`: of this CPV, by rank of the node. Greatest gain (one stage) or least violation (several), ties to the larger cluster,
   /// then fewer bytes, then the lower id. `without` is left out.
   [[nodiscard]] Antichain best(std::span<const Serving> servings, std::uint32_t cpv, std::uint32_t without = kNoCandidate);
 
@@ -55,9 +55,7 @@ class AntichainFinder {
   [[nodiscard]] Antichain evaluated(std::vector<Serving> chosen, std::uint32_t cpv) const;
   [[nodiscard]] std::uint32_t rank(const Serving& s) const { return order_.first(problem_.node[s.candidate]); }
   [[nodiscard]] std::uint32_t last_rank(const Serving& s) const { return order_.last(problem_.node[s.candidate]); }
-  [[nodiscard]] double gain(const Serving& s, std::uint32_t stage) const {
-    return problem_.gain[static_cast<std::uint64_t>(s.entry) * problem_.stages + stage];
-  }
+  [[nodiscard]] double gain(const Serving& s, std::uint32_t stage) const { return problem_.gain(s.candidate, s.entry, stage); }
 
   const SelectionProblem& problem_;
   const TreeOrder& order_;

@@ -27,35 +27,38 @@ bool Cover::before(const Serving& a, const Serving& b) const {
 }
 
 bool Cover::uses(std::uint32_t cpv, std::uint32_t candidate) const {
-  return std::binary_search(antichain_[cpv].begin(), antichain_[cpv].end(), candidate);
+  return std::ranges::binary_search(antichain_[cpv], candidate, {}, &Serving::candidate);
 }
 
 void Cover::add(std::uint32_t candidate) {
   if (in_set_[candidate]) return;
   in_set_[candidate] = true;
-  for (std::uint64_t e = problem_.offset[candidate]; e < problem_.offset[candidate + 1]; ++e) {
-    auto& column = serving_[problem_.cpv[e]];
-    const Serving added{candidate, static_cast<std::uint32_t>(e)};
+  problem_.for_each_served(candidate, [&](std::uint32_t entry) {
+    auto& column = serving_[problem_.cpv[entry]];
+    const Serving added{candidate, entry};
     column.insert(std::lower_bound(column.begin(), column.end(), added, [&](const auto& a, const auto& b) { return before(a, b); }), added);
-  }
+  });
 }
 
 std::optional<std::vector<Assignment>> Cover::replacements(std::uint32_t candidate) {
   std::vector<Assignment> result;
-  for (std::uint64_t e = problem_.offset[candidate]; e < problem_.offset[candidate + 1]; ++e) {
-    const std::uint32_t p = problem_.cpv[e];
-    if (!uses(p, candidate)) continue;
+  bool possible = true;
+  problem_.for_each_served(candidate, [&](std::uint32_t entry) {
+    const std::uint32_t p = problem_.cpv[entry];
+    if (!possible || !uses(p, candidate)) return;
     Antichain other = finder_.best(serving_[p], p, candidate);
-    if (!other.meets()) return std::nullopt;
-    result.push_back({p, std::move(other.candidates)});
-  }
+    possible = other.meets();
+    result.push_back({p, std::move(other.members)});
+  });
+  if (!possible) return std::nullopt;
   return result;
 }
 
 std::vector<Assignment> Cover::remove(std::uint32_t candidate, std::vector<Assignment> replacements) {
   in_set_[candidate] = false;
-  for (std::uint64_t e = problem_.offset[candidate]; e < problem_.offset[candidate + 1]; ++e)
-    std::erase_if(serving_[problem_.cpv[e]], [&](const Serving& s) { return s.candidate == candidate; });
+  problem_.for_each_served(candidate, [&](std::uint32_t entry) {
+    std::erase_if(serving_[problem_.cpv[entry]], [&](const Serving& s) { return s.candidate == candidate; });
+  });
   for (auto& [cpv, antichain] : replacements) std::swap(antichain_[cpv], antichain);
   return replacements;
 }

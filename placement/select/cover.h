@@ -15,7 +15,7 @@ namespace standin {
 /// A CPV and the antichain it is to use.
 struct Assignment {
   std::uint32_t cpv = 0;
-  std::vector<std::uint32_t> antichain;  // ascending ids
+  std::vector<Serving> antichain;  // by candidate id
 };
 
 class Cover {
@@ -24,12 +24,12 @@ class Cover {
 
   [[nodiscard]] bool contains(std::uint32_t candidate) const { return in_set_[candidate]; }
   [[nodiscard]] std::vector<std::uint32_t> members() const;
-  [[nodiscard]] const std::vector<std::uint32_t>& antichain(std::uint32_t cpv) const { return antichain_[cpv]; }
+  [[nodiscard]] const std::vector<Serving>& antichain(std::uint32_t cpv) const { return antichain_[cpv]; }
   /// Best antichain of S at the CPV, whatever it uses now.
   [[nodiscard]] Antichain best(std::uint32_t cpv) { return finder_.best(serving_[cpv], cpv); }
 
   void add(std::uint32_t candidate);
-  void assign(std::uint32_t cpv, std::vector<std::uint32_t> antichain) { antichain_[cpv] = std::move(antichain); }
+  void assign(std::uint32_t cpv, std::vector<Serving> antichain) { antichain_[cpv] = std::move(antichain); }
 
   /// New antichains for all CPVs that use the candidate, without it; nothing if one of them cannot do without.
   [[nodiscard]] std::optional<std::vector<Assignment>> replacements(std::uint32_t candidate);
@@ -47,7 +47,7 @@ class Cover {
   AntichainFinder finder_;
   std::vector<bool> in_set_;
   std::vector<std::vector<Serving>> serving_;  // per CPV: members of S that serve it, by (rank, candidate id)
-  std::vector<std::vector<std::uint32_t>> antichain_;
+  std::vector<std::vector<Serving>> antichain_;
 };
 
 }  // namespace standin

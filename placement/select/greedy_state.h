@@ -14,7 +14,7 @@
 #include <span>
 #include <vector>
 
-#include "placement/select/selection_problem.h"
+#include "placement/select/serving.h"
 #include "placement/select/tree_order.h"
 
 namespace standin {
@@ -24,8 +24,8 @@ class GreedyState {
   /// CPVs with `ignored[p]` (P flags, or empty) count as met.
   GreedyState(const SelectionProblem& problem, const TreeOrder& order, const std::vector<bool>& ignored);
 
-  /// Puts an antichain to use at a CPV where nothing is in use yet, whatever its gains (what is baked already).
-  void represent(std::uint32_t cpv, std::span<const std::uint32_t> antichain);
+  /// Puts an antichain of one CPV to use, where nothing is in use yet, whatever its gains (what is baked already).
+  void represent(std::span<const Serving> antichain);
 
   [[nodiscard]] double score(std::uint32_t candidate) const;
   /// Uses the candidate wherever its score comes from.
@@ -47,16 +47,17 @@ class GreedyState {
     std::size_t begin = 0, end = 0;
   };
 
-  [[nodiscard]] bool met(std::uint32_t cpv) const;
+  [[nodiscard]] bool is_met(std::uint32_t cpv) const;
   [[nodiscard]] bool ancestor_in_use(const Cpv& state, std::uint32_t node) const;
   [[nodiscard]] Range accepted_inside(const Cpv& state, std::uint32_t node) const;
-  [[nodiscard]] double net(const Cpv& state, Range inside, std::uint64_t entry, std::uint32_t stage) const;
-  [[nodiscard]] double term(std::uint32_t candidate, std::uint64_t entry) const;
-  void use(std::uint32_t candidate, std::uint64_t entry);
+  [[nodiscard]] double net(const Cpv& state, Range inside, const Serving& serving, std::uint32_t stage) const;
+  [[nodiscard]] double term(const Serving& serving) const;
+  void use(const Serving& serving);
 
   const SelectionProblem& problem_;
   const TreeOrder& order_;
   std::vector<double> residual_;  // P * K
+  std::vector<bool> met_;
   std::vector<Cpv> cpvs_;
   std::uint32_t unmet_ = 0;
 };

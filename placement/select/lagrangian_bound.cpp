@@ -32,6 +32,7 @@ class Dual {
     std::vector<double> slack = problem_.bytes;
     for (const std::uint32_t p : cpvs_by_coverage()) {
       budget.check();
+      columns_.read(p, column_);
       for (std::uint32_t k = 0; k < problem_.stages; ++k) raise(p, k, slack);
     }
   }
@@ -75,24 +76,24 @@ class Dual {
     double bytes_per_gain = 0.0;  // price / deficit
   };
 
-  [[nodiscard]] std::size_t constraint(std::uint64_t entry, std::uint32_t stage) const {
+  [[nodiscard]] std::size_t constraint(std::uint32_t entry, std::uint32_t stage) const {
     return static_cast<std::size_t>(problem_.cpv[entry]) * problem_.stages + stage;
   }
   /// a = min(max(gain, 0), deficit), 0 for a dropped constraint.
-  [[nodiscard]] double useful_gain(std::uint64_t entry, std::uint32_t stage) const {
-    return std::max(0.0, std::min(problem_.gain[entry * problem_.stages + stage], constraints_[constraint(entry, stage)].deficit));
+  [[nodiscard]] double useful_gain(const Serving& s, std::uint32_t stage) const {
+    return std::max(0.0, std::min(problem_.gain(s.candidate, s.entry, stage), constraints_[constraint(s.entry, stage)].deficit));
   }
 
   void raise(std::uint32_t cpv, std::uint32_t stage, std::vector<double>& slack) {
     const std::size_t q = static_cast<std::size_t>(cpv) * problem_.stages + stage;
     const double deficit = constraints_[q].deficit;
     double most = std::numeric_limits<double>::infinity();
-    for (const Serving& s : columns_.of(cpv))
-      if (const double useful = useful_gain(s.entry, stage); useful > 0.0) most = std::min(most, slack[s.candidate] / (useful / deficit));
+    for (const Serving& s : column_)
+      if (const double useful = useful_gain(s, stage); useful > 0.0) most = std::min(most, slack[s.candidate] / (useful / deficit));
     if (!(most > 0.0) || std::isinf(most)) return;
     price_[q] = most;
-    for (const Serving& s : columns_.of(cpv))
-      if (const double useful = useful_gain(s.entry, stage); useful > 0.0) slack[s.candidate] -= most * (useful / deficit);
+    for (const Serving& s : column_)
+      if (const double useful = useful_gain(s, stage); useful > 0.0) slack[s.candidate] -= most * (useful / deficit);
   }
 
   /// L(price) less its rounding error; `shortage[q]` becomes 1 - coverage by the candidates that are worth their price (a subgradient).
@@ -129,36 +130,45 @@ class Dual {
 
   [[nodiscard]] double payment(std::uint32_t candidate) const {
     double sum = 0.0;
-    for (std::uint64_t e = problem_.offset[candidate]; e < problem_.offset[candidate + 1]; ++e)
-      for (std::uint32_t k = 0; k < problem_.stages; ++k) sum += constraints_[constraint(e, k)].bytes_per_gain * useful_gain(e, k);
+    problem_.for_each_served(candidate, [&](std::uint32_t entry) {
+      for (std::uint32_t k = 0; k < problem_.stages; ++k)
+        sum += constraints_[constraint(entry, k)].bytes_per_gain * useful_gain({candidate, entry}, k);
+    });
     return sum;
   }
 
   void cover_with(std::uint32_t candidate, std::vector<double>& shortage) const {
-    for (std::uint64_t e = problem_.offset[candidate]; e < problem_.offset[candidate + 1]; ++e)
+    problem_.for_each_served(candidate, [&](std::uint32_t entry) {
       for (std::uint32_t k = 0; k < problem_.stages; ++k)
-        if (const double useful = useful_gain(e, k); useful > 0.0)
-          shortage[constraint(e, k)] -= useful / constraints_[constraint(e, k)].deficit;
+        if (const double useful = useful_gain({candidate, entry}, k); useful > 0.0)
+          shortage[constraint(entry, k)] -= useful / constraints_[constraint(entry, k)].deficit;
+    });
   }
 
   [[nodiscard]] std::vector<std::uint32_t> cpvs_by_coverage() const {
     std::vector<std::uint32_t> cpvs(problem_.cpv_count());
+    std::vector<std::uint64_t> coverage(problem_.cpv_count());
     std::iota(cpvs.begin(), cpvs.end(), 0U);
-    std::stable_sort(cpvs.begin(), cpvs.end(),
-                     [&](std::uint32_t a, std::uint32_t b) { return columns_.of(a).size() < columns_.of(b).size(); });
+    for (const std::uint32_t p : cpvs) coverage[p] = columns_.coverage(p);
+    std::stable_sort(cpvs.begin(), cpvs.end(), [&](std::uint32_t a, std::uint32_t b) { return coverage[a] < coverage[b]; });
     return cpvs;
   }
 
   [[nodiscard]] std::uint64_t longest_row() const {
     std::uint64_t longest = 0;
-    for (std::size_t c = 0; c + 1 < problem_.offset.size(); ++c) longest = std::max(longest, problem_.offset[c + 1] - problem_.offset[c]);
+    for (std::uint32_t c = 0; c < problem_.candidate_count(); ++c) {
+      std::uint64_t entries = 0;
+      for (const BlockRun& run : problem_.runs_of(c)) entries += problem_.block_offset[run.end] - problem_.block_offset[run.begin];
+      longest = std::max(longest, entries);
+    }
     return longest * problem_.stages;
   }
 
   const SelectionProblem& problem_;
   const Columns& columns_;
   std::vector<Constraint> constraints_;
-  std::vector<double> price_;  // bytes, >= 0
+  std::vector<double> price_;    // bytes, >= 0
+  std::vector<Serving> column_;  // of the CPV at hand
   double relative_error_ = 0.0;
 };
 

@@ -15,10 +15,9 @@ void sort_by_falling_bytes(const SelectionProblem& problem, std::vector<std::uin
 /// Members that the candidate could make redundant: only those in use where it serves.
 std::vector<std::uint32_t> rivals(const SelectionProblem& problem, const Cover& cover, std::uint32_t candidate) {
   std::vector<std::uint32_t> result;
-  for (std::uint64_t e = problem.offset[candidate]; e < problem.offset[candidate + 1]; ++e) {
-    const auto& used = cover.antichain(problem.cpv[e]);
-    result.insert(result.end(), used.begin(), used.end());
-  }
+  problem.for_each_served(candidate, [&](std::uint32_t entry) {
+    for (const Serving& used : cover.antichain(problem.cpv[entry])) result.push_back(used.candidate);
+  });
   std::sort(result.begin(), result.end());
   result.erase(std::unique(result.begin(), result.end()), result.end());
   return result;

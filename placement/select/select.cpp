@@ -14,7 +14,13 @@ namespace {
 class Selector {
  public:
   Selector(const SelectionProblem& problem, const SelectionConfig& config, const WorkBudget& budget)
-      : problem_(problem), config_(config), budget_(budget), order_(problem.parent), columns_(problem, order_), cover_(problem, order_) {}
+      : problem_(problem),
+        config_(config),
+        budget_(budget),
+        order_(problem.parent),
+        columns_(problem, order_),
+        finder_(problem, order_),
+        cover_(problem, order_) {}
 
   Selection run(std::span<const std::uint32_t> initial) {
     for (const std::uint32_t candidate : initial) cover_.add(candidate);
@@ -37,13 +43,12 @@ class Selector {
  private:
   /// CPVs that need nothing, and those that nothing can solve: no bytes are spent on either.
   void set_aside() {
-    AntichainFinder finder(problem_, order_);
     ignored_.assign(problem_.cpv_count(), false);
     for (std::uint32_t p = 0; p < problem_.cpv_count(); ++p) {
       budget_.check();
       if (!needs_gain(p)) {
         ignored_[p] = true;
-      } else if (const Antichain best = finder.best(columns_.of(p), p); !best.meets()) {
+      } else if (const Antichain best = best_of_all(p); !best.meets()) {
         ignored_[p] = true;
         result_.summary.unmet.push_back({p, best.violation});
       }
@@ -55,7 +60,7 @@ class Selector {
     for (std::uint32_t c = 0; c < taken.size(); ++c) taken[c] = cover_.contains(c);
     GreedyState state(problem_, order_, ignored_);
     for (std::uint32_t p = 0; p < problem_.cpv_count(); ++p)
-      if (!ignored_[p]) state.represent(p, cover_.best(p).candidates);
+      if (!ignored_[p]) state.represent(cover_.best(p).members);
 
     const GreedyPicks picks = config_.lazy ? pick_lazily(state, taken, budget_) : pick_plainly(state, taken, budget_);
     for (const std::uint32_t candidate : picks.order) cover_.add(candidate);
@@ -64,15 +69,14 @@ class Selector {
   }
 
   void repair() {
-    AntichainFinder finder(problem_, order_);
     for (std::uint32_t p = 0; p < problem_.cpv_count(); ++p) {
       if (ignored_[p]) continue;
       budget_.check();
       if (Antichain now = cover_.best(p); now.meets()) {
-        cover_.assign(p, std::move(now.candidates));
+        cover_.assign(p, std::move(now.members));
       } else {
         ++result_.summary.stalled;
-        repair_stall(problem_, cover_, p, finder.best(columns_.of(p), p), columns_.of(p));
+        repair_stall(problem_, cover_, p, best_of_all(p));
       }
     }
   }
@@ -82,8 +86,9 @@ class Selector {
     result_.assigned.resize(problem_.cpv_count());
     for (std::uint32_t p = 0; p < problem_.cpv_count(); ++p) {
       if (!needs_gain(p)) continue;
-      Antichain best = cover_.best(p);
-      result_.assigned[p] = best.meets() || ignored_[p] ? std::move(best.candidates) : cover_.antichain(p);
+      const Antichain best = cover_.best(p);
+      for (const Serving& serving : best.meets() || ignored_[p] ? best.members : cover_.antichain(p))
+        result_.assigned[p].push_back(serving.candidate);
     }
     result_.chosen = cover_.members();
   }
@@ -97,6 +102,15 @@ class Selector {
     summary.message = summary.unmet.empty() ? "every region is within budget"
                                             : std::to_string(summary.unmet.size()) + " of " + std::to_string(problem_.cpv_count()) +
                                                   " regions stay over budget with any candidates";
+  }
+
+  /// The best antichain over all candidates.
+  [[nodiscard]] Antichain best_of_all(std::uint32_t cpv) {
+    if (problem_.stages == 1)
+      columns_.read_best(cpv, column_);
+    else
+      columns_.read(cpv, column_);
+    return finder_.best(column_, cpv);
   }
 
   [[nodiscard]] bool needs_gain(std::uint32_t cpv) const {
@@ -115,6 +129,8 @@ class Selector {
   const WorkBudget& budget_;
   TreeOrder order_;
   Columns columns_;
+  AntichainFinder finder_;
+  std::vector<Serving> column_;  // scratch
   Cover cover_;
   std::vector<bool> ignored_;
   Selection result_;

@@ -5,9 +5,12 @@
 // another), so as to
 //     minimise    sum over c in S of bytes[c]
 //     subject to  sum over c in A_p of gain[c,p,k]  >=  deficit[p,k]      for every p and k
-// gain is measured against the ORIGINAL objects (thesis Eq. 5.4 without its truncation), so antichain gains add exactly. It is sparse, in
-// rows by candidate with a sentinel at the end: rows 0, 1 with gains {(p2, 1.5)}, {} are
-//     offset = 0 1 1    cpv = 2    gain = 1.5          (gain holds K values per entry)
+// gain is measured against the ORIGINAL objects (thesis Eq. 5.4 without its truncation), so antichain gains add exactly. A city has
+// thousands of millions of them, but they factor:
+//     gain[c,p,k] = worth[node(c),p,k] - cost[c,form(p),k]
+// worth: of the node's originals, the same for all its candidates; cost: of drawing the impostor, in one of the few linear forms that
+// regions come in. Candidates serve whole view cells, so worth is stored in blocks, one per (node, cell), and a candidate lists runs of
+// them. It serves p when p is in one of its blocks and some stage gains.
 // Thesis 5.3-5.7, math.md 5. Set cover in disguise, hence NP-hard; the greedy is Wolsey's truncated sum, computed so that it is monotone
 // under rounding. The solver never sees geometry.
 #pragma once
@@ -21,18 +24,57 @@
 
 namespace standin {
 
+/// Half-open range of blocks.
+struct BlockRun {
+  std::uint32_t begin = 0;
+  std::uint32_t end = 0;
+};
+
 struct SelectionProblem {
-  std::uint32_t stages = 1;           // K
-  std::vector<std::int32_t> parent;   // tree of nodes; parent[n] < n or -1
-  std::vector<std::uint32_t> node;    // per candidate
-  std::vector<double> bytes;          // per candidate, > 0
-  std::vector<double> deficit;        // P * K, may be <= 0 (already met)
-  std::vector<std::uint64_t> offset;  // C + 1
-  std::vector<std::uint32_t> cpv;     // per entry, ascending within a row
-  std::vector<double> gain;           // per entry * K
+  std::uint32_t stages = 1;          // K
+  std::uint32_t forms = 1;           // F
+  std::vector<std::int32_t> parent;  // tree of nodes; parent[n] < n or -1
+
+  std::vector<double> deficit;     // P * K, may be <= 0 (already met)
+  std::vector<std::uint8_t> form;  // P, < F
+
+  std::vector<std::uint32_t> block_offset = {0};  // blocks + 1, into the entries
+  std::vector<std::uint32_t> cpv;                 // per entry, ascending within a block
+  std::vector<double> worth;                      // per entry * K
+
+  std::vector<std::uint32_t> node;              // per candidate
+  std::vector<double> bytes;                    // per candidate, > 0
+  std::vector<double> cost;                     // C * F * K
+  std::vector<std::uint64_t> run_offset = {0};  // C + 1, into the runs
+  std::vector<BlockRun> runs;                   // no CPV twice in a candidate; all candidates of a block have the same node
 
   [[nodiscard]] std::uint32_t candidate_count() const { return static_cast<std::uint32_t>(node.size()); }
-  [[nodiscard]] std::uint32_t cpv_count() const { return static_cast<std::uint32_t>(deficit.size() / stages); }
+  [[nodiscard]] std::uint32_t cpv_count() const { return static_cast<std::uint32_t>(form.size()); }
+  [[nodiscard]] std::uint32_t block_count() const { return static_cast<std::uint32_t>(block_offset.size() - 1); }
+
+  [[nodiscard]] std::span<const BlockRun> runs_of(std::uint32_t candidate) const {
+    return {runs.data() + run_offset[candidate], runs.data() + run_offset[candidate + 1]};
+  }
+  /// The candidate's costs in the form of a CPV, K of them.
+  [[nodiscard]] const double* costs(std::uint32_t candidate, std::uint32_t at_cpv) const {
+    return cost.data() + (static_cast<std::size_t>(candidate) * forms + form[at_cpv]) * stages;
+  }
+  /// `entry`: in a block of the candidate.
+  [[nodiscard]] double gain(std::uint32_t candidate, std::uint32_t entry, std::uint32_t stage) const {
+    return worth[static_cast<std::size_t>(entry) * stages + stage] - costs(candidate, cpv[entry])[stage];
+  }
+  [[nodiscard]] bool serves(std::uint32_t candidate, std::uint32_t entry) const {
+    for (std::uint32_t k = 0; k < stages; ++k)
+      if (gain(candidate, entry, k) > 0.0) return true;
+    return false;
+  }
+  /// Calls visit(entry) for every CPV that the candidate serves, always in the same order.
+  template <class Visit>
+  void for_each_served(std::uint32_t candidate, Visit&& visit) const {
+    for (const BlockRun& run : runs_of(candidate))
+      for (std::uint32_t e = block_offset[run.begin]; e < block_offset[run.end]; ++e)
+        if (serves(candidate, e)) visit(e);
+  }
 };
 
 /// Why a CPV stayed unsolved.

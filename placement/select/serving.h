@@ -1,7 +1,8 @@
-// Who serves a CPV: the gain matrix by columns.
+// Who serves a CPV: the gain matrix by columns, as factored as the matrix itself.
 //
-// Columns list their candidates by (rank of the node, candidate id), so that a node's whole subtree is contiguous and comes after it: the
-// order in which the tree DP wants them. An entry points into SelectionProblem::cpv and ::gain.
+// A column lists its servings by (rank of the node, block, candidate id), so that a node's whole subtree is contiguous and comes after it:
+// the order in which the tree DP wants them. Written out, all columns together would be as large as all gains: what is kept is which blocks
+// hold a CPV and which candidates a block has.
 #pragma once
 
 #include <cstdint>
@@ -13,25 +14,46 @@
 
 namespace standin {
 
+/// A candidate at one of the CPVs it serves.
 struct Serving {
   std::uint32_t candidate = 0;
   std::uint32_t entry = 0;
+  friend bool operator==(const Serving&, const Serving&) = default;
 };
 
 class Columns {
  public:
   Columns(const SelectionProblem& problem, const TreeOrder& order);
 
-  [[nodiscard]] std::span<const Serving> of(std::uint32_t cpv) const {
-    return {servings_.data() + offset_[cpv], servings_.data() + offset_[cpv + 1]};
-  }
+  /// Replaces `servings` by all of the CPV.
+  void read(std::uint32_t cpv, std::vector<Serving>& servings) const;
+  /// One stage: only the candidate of each block that gains most, i.e. costs least; ties to fewer bytes, then to the lower id. No antichain
+  /// gains more than the best of these.
+  void read_best(std::uint32_t cpv, std::vector<Serving>& servings) const;
+  /// How many candidates list the CPV.
+  [[nodiscard]] std::uint64_t coverage(std::uint32_t cpv) const;
 
  private:
-  std::vector<std::uint64_t> offset_;
-  std::vector<Serving> servings_;
+  void list_candidates();
+  void list_blocks(const TreeOrder& order);
+  void find_best();
+  [[nodiscard]] std::span<const std::uint32_t> blocks(std::uint32_t cpv) const {
+    return {block_.data() + block_offset_[cpv], block_.data() + block_offset_[cpv + 1]};
+  }
+  [[nodiscard]] std::span<const std::uint32_t> candidates(std::uint32_t block) const {
+    return {candidate_.data() + candidate_offset_[block], candidate_.data() + candidate_offset_[block + 1]};
+  }
+  [[nodiscard]] std::uint32_t entry(std::uint32_t block, std::uint32_t cpv) const;
+
+  const SelectionProblem& problem_;
+  std::vector<std::uint64_t> candidate_offset_;  // per block + 1
+  std::vector<std::uint32_t> candidate_;         // ascending within a block
+  std::vector<std::uint64_t> block_offset_;      // per CPV + 1
+  std::vector<std::uint32_t> block_;             // by rank within a CPV
+  std::vector<std::uint32_t> best_;              // one stage: blocks * forms
 };
 
-/// Throws Failure(kBadUsage) naming the row for a problem that breaks the layout of selection_problem.h.
+/// Throws Failure(kBadUsage) naming the place in a problem that breaks the layout of selection_problem.h.
 void validate(const SelectionProblem& problem);
 
 }  // namespace standin

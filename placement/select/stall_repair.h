@@ -10,6 +10,6 @@
 namespace standin {
 
 /// `best`: an antichain that meets the CPV.
-void repair_stall(const SelectionProblem& problem, Cover& cover, std::uint32_t cpv, const Antichain& best, std::span<const Serving> column);
+void repair_stall(const SelectionProblem& problem, Cover& cover, std::uint32_t cpv, const Antichain& best);
 
 }  // namespace standin

@@ -35,7 +35,7 @@ struct SelectedImpostors {
 };
 
 [[nodiscard]] SelectedImpostors select_and_bake(const World& world, const Subdivision& subdivision, const CandidateSet& candidates,
-                                                const TimeModel& model, double budget_ms, const JobSpec& spec, StageClock& clock,
-                                                const WorkBudget& budget);
+                                                const SizeModel& sizes, const TimeModel& model, double budget_ms, const JobSpec& spec,
+                                                StageClock& clock, const WorkBudget& budget);
 
 }  // namespace standin

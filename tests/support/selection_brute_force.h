@@ -65,7 +65,11 @@ class BruteForce {
     return true;
   }
 
-  [[nodiscard]] bool serves(std::uint32_t candidate, std::uint32_t cpv) const { return entry(candidate, cpv).has_value(); }
+  [[nodiscard]] bool serves(std::uint32_t candidate, std::uint32_t cpv) const {
+    for (std::uint32_t k = 0; k < problem_.stages; ++k)
+      if (gain(candidate, cpv, k) > 0.0) return true;
+    return false;
+  }
 
  private:
   [[nodiscard]] std::vector<std::uint32_t> members(std::uint32_t mask) const {
@@ -75,15 +79,13 @@ class BruteForce {
     return set;
   }
 
-  [[nodiscard]] std::optional<std::uint64_t> entry(std::uint32_t candidate, std::uint32_t cpv) const {
-    for (auto e = problem_.offset[candidate]; e < problem_.offset[candidate + 1]; ++e)
-      if (problem_.cpv[e] == cpv) return e;
-    return std::nullopt;
-  }
-
   [[nodiscard]] double gain(std::uint32_t candidate, std::uint32_t cpv, std::uint32_t stage) const {
-    const auto e = entry(candidate, cpv);
-    return e ? problem_.gain[*e * problem_.stages + stage] : 0.0;
+    const auto& p = problem_;
+    for (auto r = p.run_offset[candidate]; r < p.run_offset[candidate + 1]; ++r)
+      for (auto e = p.block_offset[p.runs[r].begin]; e < p.block_offset[p.runs[r].end]; ++e)
+        if (p.cpv[e] == cpv)
+          return p.worth[std::size_t{e} * p.stages + stage] - p.cost[(std::size_t{candidate} * p.forms + p.form[cpv]) * p.stages + stage];
+    return 0.0;
   }
 
   /// Whether node a is b or lies below it.

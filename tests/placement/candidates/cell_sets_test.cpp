@@ -73,10 +73,33 @@ TEST(ShaftCellSets, EqualTheBlindProduct) {
               set.push_back(cell);
           if (set.size() >= 2) blind.insert(set);
         }
-    const auto sets = shaft_cell_sets(cluster, cells, world.subdivision, grid, apex_deg);
-    EXPECT_EQ(std::set<CellSet>(sets.begin(), sets.end()), blind) << "seed " << seed;
+    const auto groups = group_cells(cells, world.subdivision, world.subdivision.cells.front().key.level);
+    ASSERT_EQ(groups.size(), cells.size());
+    std::set<CellSet> sets;
+    for (const auto& set : shaft_group_sets(cluster, groups, grid, apex_deg)) sets.insert(cells_of(set, groups));
+    EXPECT_EQ(sets, blind) << "seed " << seed;
     EXPECT_GT(blind.size(), 3U);
   }
+}
+
+TEST(CellGroups, AreTheLeavesOfTheGrid) {
+  // Two leaves, the second halved into four cells of which the node sees three.
+  ToyWorld world = empty_toy_world();
+  world.add_cell({1, {0, 0, 0}}, {Vec3(0.0), Vec3(2.0)});
+  world.add_cell({2, {2, 0, 0}}, {Vec3(2.0, 0.0, 0.0), Vec3(3.0, 1.0, 1.0)});
+  world.add_cell({2, {2, 0, 1}}, {Vec3(2.0, 0.0, 1.0), Vec3(3.0, 1.0, 2.0)});
+  world.add_cell({2, {3, 0, 0}}, {Vec3(3.0, 0.0, 0.0), Vec3(4.0, 1.0, 1.0)});
+  world.add_cell({2, {3, 0, 1}}, {Vec3(3.0, 0.0, 1.0), Vec3(4.0, 1.0, 2.0)});
+  const std::vector<std::uint32_t> seen = {0, 1, 2, 4};
+  const auto groups = group_cells(seen, world.subdivision, 1);
+  ASSERT_EQ(groups.size(), 2U);
+  EXPECT_EQ(groups[0].cells, (CellSet{0}));
+  EXPECT_EQ(groups[1].cells, (CellSet{1, 2, 4}));
+  EXPECT_EQ(groups[1].box.min, Vec3(2.0, 0.0, 0.0));
+  EXPECT_EQ(groups[1].box.max, Vec3(4.0, 1.0, 2.0));
+  EXPECT_EQ(cells_of({0, 1}, groups), (CellSet{0, 1, 2, 4}));
+  const auto cubes = box_cell_sets(seen, world.subdivision, 1);
+  EXPECT_EQ(std::set<CellSet>(cubes.begin(), cubes.end()), (std::set<CellSet>{{1, 2, 4}}));
 }
 
 TEST(BoxCellSets, AreTheNodesOfTheGrid) {

@@ -30,9 +30,8 @@ struct ToyWorld {
     return generate_candidates(scene, hierarchy, subdivision, model, sizes, camera, quality, options, {});
   }
   [[nodiscard]] Reach reach() const { return reachable_times(scene, hierarchy, subdivision, model, sizes, camera, quality, options, {}); }
-  [[nodiscard]] SelectionProblem problem(const CandidateSet& set, double budget_ms, double reserve_ms = 0.0,
-                                         const std::vector<std::optional<BakedSize>>& baked = {}) const {
-    return make_selection_problem(hierarchy, subdivision, set, baked, model, camera, {budget_ms, reserve_ms}, options.threads, {});
+  [[nodiscard]] SelectionProblem problem(const CandidateSet& set, double budget_ms, double reserve_ms = 0.0) const {
+    return make_selection_problem(hierarchy, subdivision, set, model, camera, {budget_ms, reserve_ms}, options.threads, {});
   }
 
   void add_object(const Box& bounds) {

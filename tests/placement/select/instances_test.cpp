@@ -128,10 +128,19 @@ TEST(Select, BrokenProblemsAreNamed) {
   problem.parent[1] = 1;
   EXPECT_EQ(word_of(problem), ErrorWord::kBadUsage);
   problem = good;
-  problem.gain[0] = std::numeric_limits<double>::quiet_NaN();
+  problem.worth[0] = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(word_of(problem), ErrorWord::kBadUsage);
   problem = good;
-  problem.offset[1] = 7;
+  problem.block_offset[1] = 7;
+  EXPECT_EQ(word_of(problem), ErrorWord::kBadUsage);
+  problem = good;
+  problem.runs[0].end = 2;
+  EXPECT_EQ(word_of(problem), ErrorWord::kBadUsage);
+  problem = good;
+  problem.form[1] = 1;
+  EXPECT_EQ(word_of(problem), ErrorWord::kBadUsage);
+  problem = make_problem({-1, 0, 0}, {{1, 2.0, {{0, {4.0}}}}, {2, 2.0, {{0, {4.0}}}}}, {4.0});
+  problem.runs[1] = {0, 2};  // of another node
   EXPECT_EQ(word_of(problem), ErrorWord::kBadUsage);
   EXPECT_THROW((void)select(good, {}, {1}), Failure);
 }

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <functional>
 #include <numeric>
+#include <utility>
 
 #include "tests/support/selection_brute_force.h"
 #include "tests/support/selection_instances.h"
@@ -118,15 +119,46 @@ TEST(SelectorLaws, ExchangeNeverCosts) {
   }
 }
 
+void check_many_factored(const char* name, const FactoredShape& shape, std::uint64_t seeds) {
+  double worst_ratio = 1.0;
+  for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
+    SCOPED_TRACE(std::string(name) + ", seed " + std::to_string(seed));
+    check_selector_laws(
+        random_factored_problem(seed, shape), [](const auto& problem) { return select_impostors(problem, {}, {}, {}); }, worst_ratio);
+    if (testing::Test::HasFailure()) return;
+  }
+  std::printf("%s: %lu instances, worst bytes / optimum %.3f\n", name, static_cast<unsigned long>(seeds), worst_ratio);
+}
+
+TEST(SelectorLaws, FactoredGains) {
+  check_many_factored("factored", {}, 250);
+}
+TEST(SelectorLaws, FactoredGainsInTwoStages) {
+  check_many_factored("factored, two stages", {.stages = 2}, 150);
+}
+
+TEST(SelectorLaws, FactoredAndExplicitGainsAreTheSameProblem) {
+  for (std::uint64_t seed = 1; seed <= 200; ++seed) {
+    for (const std::uint32_t stages : {1U, 2U}) {
+      const auto factored =
+          random_factored_problem(seed, {.nodes = 15, .candidates = 60, .cells = 8, .cpvs_per_cell = 3, .stages = stages, .demand = 25.0});
+      const auto written_out = make_problem(factored.parent, rows_of(factored), factored.deficit, stages);
+      const auto a = select_impostors(factored, {.exchange_rounds = 1}, {}, {});
+      const auto b = select_impostors(written_out, {.exchange_rounds = 1}, {}, {});
+      ASSERT_EQ(a.chosen, b.chosen) << "seed " << seed << ", stages " << stages;
+      ASSERT_EQ(a.assigned, b.assigned) << "seed " << seed << ", stages " << stages;
+      EXPECT_EQ(a.summary.evaluations, b.summary.evaluations);
+    }
+  }
+}
+
 TEST(SelectorLaws, OrderOfCpvsDoesNotMatterForExactGains) {
   for (std::uint64_t seed = 1; seed <= 100; ++seed) {
     const auto problem = random_problem(seed, {.nodes = 20, .candidates = 40, .cpvs = 8, .demand = 20.0});
-    std::vector<Row> rows;
-    const std::uint32_t last = problem.cpv_count() - 1;
-    for (std::uint32_t c = 0; c < problem.candidate_count(); ++c) {
-      Row row{problem.node[c], problem.bytes[c], {}};
-      for (auto e = problem.offset[c]; e < problem.offset[c + 1]; ++e) row.gain[last - problem.cpv[e]] = {problem.gain[e]};
-      rows.push_back(row);
+    std::vector<Row> rows = rows_of(problem);
+    for (Row& row : rows) {
+      const auto gains = std::exchange(row.gain, {});
+      for (const auto& [cpv, gain] : gains) row.gain[problem.cpv_count() - 1 - cpv] = gain;
     }
     const auto turned = make_problem(problem.parent, rows, std::vector<double>(problem.deficit.rbegin(), problem.deficit.rend()));
     const auto picked = select_impostors(problem, {.bound_iterations = 0}, {}, {});
@@ -142,12 +174,9 @@ TEST(BruteForceOracle, OptimumFallsWithTheBudgetAndWithMoreCandidates) {
   for (std::uint64_t seed = 1; seed <= 60; ++seed) {
     auto problem = random_problem(seed, {});
     const auto strict = BruteForce(problem).optimum();
-    auto fewer = problem;
-    fewer.node.pop_back();
-    fewer.bytes.pop_back();
-    fewer.offset.pop_back();
-    fewer.cpv.resize(fewer.offset.back());
-    fewer.gain.resize(fewer.offset.back());
+    auto rows = rows_of(problem);
+    rows.pop_back();
+    const auto fewer = make_problem(problem.parent, rows, problem.deficit);
     if (const auto exact = BruteForce(fewer).optimum()) {
       ASSERT_TRUE(strict.has_value());
       EXPECT_LE(strict->bytes, exact->bytes);
