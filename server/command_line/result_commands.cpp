@@ -104,10 +104,13 @@ int verify_command(const CommandContext& context) {
   const PlacementFile& file = opened.file;
   const std::string glb = read_file(fs::path(context.arguments.folder) / "impostors.glb");
   const double alpha_rad = file.spec.alpha_scale * file.camera.pixel_angle_rad();
-  const VerifyInput input{opened.scene, opened.target, file.placement, file.view_space, file.camera, glb, file.spec.budget_ms, alpha_rad};
+  const json survey = read_json(fs::path(context.arguments.folder) / "metrics.json").at("survey");
+  const VerifyInput input{opened.scene,        opened.target, file.placement,
+                          file.view_space,     file.camera,   glb,
+                          file.spec.budget_ms, alpha_rad,     survey.at("worst_frame_ms")};
   VerifyOptions options;
   options.views = context.spec.verify_views;
-  options.judged_views = options.views;
+  options.judged_views = (options.views + 1) / 2;
   options.seed = context.spec.seed + 1;
   options.threads = thread_count(context.spec);
   options.pictures = 0;

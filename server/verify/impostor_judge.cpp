@@ -59,6 +59,8 @@ void judge_impostors(const VerifyInput& input, const GlbQuads& glb, const Verify
         judge_impostor(input.scene, glb, judged(impostors[id], id, input.alpha_rad), input.camera, views, options.threads, budget);
     result.judged_views += judgement.views;
     result.gap_pixels += judgement.gap_pixels;
+    result.shown_pixels += judgement.shown_pixels;
+    result.baseless_pixels += judgement.baseless_pixels;
     result.max_parallax_ratio = std::max(result.max_parallax_ratio, judgement.max_parallax_ratio);
   }
   if (chosen.size() < impostors.size())

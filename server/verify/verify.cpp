@@ -2,7 +2,6 @@
 #include "server/verify/verify.h"
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 
 #include "render/device/renderer.h"
@@ -45,21 +44,21 @@ void estimate(const VerifyInput& input, const ImpostorSet& shipped, const std::v
   }
 }
 
-/// The slow frames to time: `share` of the views, rounded up, highest estimates first.
-std::vector<bool> timed_before(const std::vector<VerifiedView>& views, double share) {
+/// The slow frames to time, highest estimates first.
+std::vector<bool> timed_before(const std::vector<VerifiedView>& views, std::uint32_t count) {
   std::vector<std::uint32_t> order(views.size());
   std::iota(order.begin(), order.end(), 0U);
   std::stable_sort(order.begin(), order.end(),
                    [&](std::uint32_t a, std::uint32_t b) { return views[a].estimated_before_ms > views[b].estimated_before_ms; });
-  order.resize(std::min(order.size(), static_cast<std::size_t>(std::ceil(share * static_cast<double>(views.size())))));
+  order.resize(std::min<std::size_t>(order.size(), count));
   std::vector<bool> timed(views.size(), false);
   for (const auto view : order) timed[view] = true;
   return timed;
 }
 
-void time_frames(Renderer& renderer, FrameTimer& timer, double before_share, const std::vector<FramePair>& frames, const WorkBudget& budget,
-                 std::vector<VerifiedView>& views) {
-  const std::vector<bool> before = timed_before(views, before_share);
+void time_frames(Renderer& renderer, FrameTimer& timer, std::uint32_t before_count, const std::vector<FramePair>& frames,
+                 const WorkBudget& budget, std::vector<VerifiedView>& views) {
+  const std::vector<bool> before = timed_before(views, before_count);
   for (std::size_t i = 0; i < views.size(); ++i) {
     budget.check();
     budget.report("verify: timing", static_cast<double>(i) / static_cast<double>(views.size()));
@@ -96,9 +95,15 @@ void note_untimed(bool timed, const VerifyOptions& options, VerifyResult& result
   if (!timed)
     result.left_out.emplace_back(
         "frame times: not measured, since the target file belongs to another device or renderer than this machine's");
-  else if (options.measured_before_share < 1.0)
-    result.left_out.push_back("frame times before: measured for " + std::to_string(options.measured_before_share) +
-                              " of the views, those with the highest estimates, to save time");
+  else if (options.measured_before < result.views.size())
+    result.left_out.push_back("frame times before: measured for " + std::to_string(options.measured_before) +
+                              " views, those with the highest estimates, to save time");
+}
+
+void compare_with_survey(double surveyed_worst_ms, VerifyResult& result) {
+  double worst_ms = 0.0;
+  for (const auto& view : result.views) worst_ms = std::max(worst_ms, view.measured_before_ms.value_or(0.0));
+  if (worst_ms > 0.0 && surveyed_worst_ms > 0.0) result.worst_before_over_surveyed = worst_ms / surveyed_worst_ms;
 }
 
 }  // namespace
@@ -117,10 +122,11 @@ VerifyResult verify_placement(const VerifyInput& input, Context& context, const 
   compare_pictures(renderer, frames, budget, result);
   if (start_timing) {
     const TimingSession session = start_timing(context);
-    time_frames(renderer, *session.timer, options.measured_before_share, frames, budget, result.views);
+    time_frames(renderer, *session.timer, options.measured_before, frames, budget, result.views);
   }
   note_untimed(static_cast<bool>(start_timing), options, result);
   count_over_budget(input.budget_ms, result);
+  compare_with_survey(input.surveyed_worst_ms, result);
   for (const auto view : worst_views(result.views, options.pictures))
     result.pictures.push_back(take_pictures(renderer, view, result.views[view].view, frames[view]));
   judge_impostors(input, glb, options, budget, result);

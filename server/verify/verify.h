@@ -45,7 +45,7 @@ struct ViewPictures {
 
 struct VerifyOptions {
   std::uint32_t views = 32;
-  double measured_before_share = 1.0;  // of the views whose slow "before" frame is rendered and timed (worst estimates first)
+  std::uint32_t measured_before = 100;  // views whose slow "before" frame is timed too (worst estimates first)
   std::uint64_t seed = 1;
   std::uint32_t pictures = 4;       // worst views by image error and by time
   std::uint32_t judged_views = 64;  // views inside view cells that are judged by rays
@@ -61,8 +61,11 @@ struct VerifyResult {
   std::uint32_t judged_views = 0;  // views judged by rays, and what they found
   std::uint64_t gap_pixels = 0;
   double max_parallax_ratio = 0.0;
-  double mean_error = 0.0;            // mean over views with an impostor in them
-  std::vector<std::string> left_out;  // what was not measured, and why
+  std::uint64_t shown_pixels = 0;                    // pixels of judged views that show an opaque texel
+  std::uint64_t baseless_pixels = 0;                 // of these, without an original to compare with (impostor_rays.h): no parallax ratio
+  std::optional<double> worst_before_over_surveyed;  // worst measured frame without impostors, over the survey's worst estimate
+  double mean_error = 0.0;                           // mean over views with an impostor in them
+  std::vector<std::string> left_out;                 // what was not measured, and why
 };
 
 /// What verification looks at: a placement and the bytes of the GLB that ships with it (impostors are read back from it).
@@ -75,6 +78,7 @@ struct VerifyInput {
   const std::string& impostor_glb;
   double budget_ms;
   double alpha_rad;
+  double surveyed_worst_ms = 0.0;  // survey.worst_frame_ms; 0: not known
 };
 
 /// Whoever times holds the machine-wide lock for as long; a test's fake timer needs none.

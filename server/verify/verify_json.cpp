@@ -67,15 +67,19 @@ json verify_json(const VerifyResult& result) {
           {"worst_over_budget", was_measured ? json(result.worst_over_budget) : json()},
           {"frame_ms_before", percentiles(measured(result, &VerifiedView::measured_before_ms))},
           {"frame_ms_after", percentiles(measured(result, &VerifiedView::measured_after_ms))},
+          {"worst_before_over_surveyed", optional_number(result.worst_before_over_surveyed)},
           {"left_out", result.left_out},
           {"frames", std::move(frames)}};
 }
 
 json image_json(const VerifyResult& result) {
   const bool judged = result.judged_views > 0;
+  const double baseless =
+      static_cast<double>(result.baseless_pixels) / static_cast<double>(std::max<std::uint64_t>(1, result.shown_pixels));
   return {{"views", result.judged_views},
           {"gap_pixels", judged ? json(result.gap_pixels) : json()},
           {"max_parallax_ratio", judged ? json(result.max_parallax_ratio) : json()},
+          {"baseless_pixel_share", result.shown_pixels > 0 ? json(baseless) : json()},
           {"mean_error", result.mean_error}};
 }
 

@@ -82,8 +82,19 @@ TEST_F(VerifyPlacement, CountsViewsOverTheBudget) {
   EXPECT_EQ(tight.worst_over_budget, worst);
 }
 
+TEST_F(VerifyPlacement, ComparesTheWorstFrameWithTheSurvey) {
+  const VerifyInput input{world.scene, target, world.placement,           world.view_space, world.camera, world.glb,
+                          100.0,       1e-3,   2.0 * test::kWallTriangles};
+  const VerifyResult result = verify_placement(input, *context, count_triangles, {.views = 64}, {});
+  double worst_ms = 0.0;
+  for (const auto& view : result.views) worst_ms = std::max(worst_ms, *view.measured_before_ms);
+  ASSERT_TRUE(result.worst_before_over_surveyed);
+  EXPECT_DOUBLE_EQ(*result.worst_before_over_surveyed, worst_ms / (2.0 * test::kWallTriangles));
+  EXPECT_FALSE(verify(100.0, {.views = 4}).worst_before_over_surveyed);
+}
+
 TEST_F(VerifyPlacement, TheSlowestEstimatesAreTimedBefore) {
-  VerifyOptions options{.views = 64, .measured_before_share = 0.25};
+  VerifyOptions options{.views = 64, .measured_before = 16};
   const VerifyResult result = verify(100.0, options);
   double least_timed = 1e9, most_untimed = 0.0;
   int timed = 0;
@@ -110,6 +121,8 @@ TEST_F(VerifyPlacement, RaysFindThePromiseKept) {
   const VerifyResult result = verify(100.0, {.views = 1, .judged_views = 8});
   EXPECT_EQ(result.judged_views, 8U);
   EXPECT_EQ(result.gap_pixels, 0U);
+  EXPECT_GT(result.shown_pixels, 0U);
+  EXPECT_LT(result.baseless_pixels, result.shown_pixels / 10);
   EXPECT_LE(result.max_parallax_ratio, 1.0);
 }
 
