@@ -30,9 +30,9 @@ std::vector<IdRange> node_runs(const std::vector<Candidate>& candidates) {
 
 /// Blocks of one node, numbered from 0, and the runs of its candidates.
 struct NodeBlocks {
-  std::vector<std::uint32_t> block_size;
-  std::vector<std::uint32_t> cpv;
-  std::vector<double> worth;
+  std::vector<std::uint32_t> cell;       // per block
+  std::vector<std::uint32_t> size;       // per block: its entries
+  std::vector<double> least_cost;        // per block and form, over the candidates that list it
   std::vector<std::uint32_t> run_count;  // per candidate
   std::vector<BlockRun> runs;
 };
@@ -41,44 +41,55 @@ struct NodeBlocks {
 /// few runs.
 class BlockMaker {
  public:
-  BlockMaker(const CellIndex& index, const Subdivision& subdivision, std::span<const Candidate> candidates)
-      : index_(index), subdivision_(subdivision), candidates_(candidates) {
-    for (const Candidate& candidate : candidates) cells_.insert(cells_.end(), candidate.cells.begin(), candidate.cells.end());
-    std::sort(cells_.begin(), cells_.end());
-    cells_.erase(std::unique(cells_.begin(), cells_.end()), cells_.end());
-    block_.resize(cells_.size());
-    least_cost_.assign(cells_.size() * kForms, std::numeric_limits<double>::infinity());
-  }
+  BlockMaker(const CellIndex& index, const Subdivision& subdivision) : index_(index), subdivision_(subdivision) {}
 
-  /// `costs`: of the candidates, kForms each.
-  NodeBlocks make(std::span<const double> costs) {
+  /// `costs`: of the candidates, kForms each. All candidates have the same node.
+  [[nodiscard]] NodeBlocks make(std::span<const Candidate> candidates, std::span<const double> costs) const {
     NodeBlocks blocks;
-    number_blocks();
-    for (std::size_t c = 0; c < candidates_.size(); ++c) append_runs(candidates_[c].cells, costs.data() + c * kForms, blocks);
-    for (const std::uint32_t position : order_) append_block(position, blocks);
+    std::vector<std::uint32_t> cells;
+    for (const Candidate& candidate : candidates) cells.insert(cells.end(), candidate.cells.begin(), candidate.cells.end());
+    std::sort(cells.begin(), cells.end());
+    cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+    for (const CellGroup& group : group_cells(cells, subdivision_, index_.leaf_level()))
+      blocks.cell.insert(blocks.cell.end(), group.cells.begin(), group.cells.end());
+    std::vector<std::uint32_t> block_of(cells.size());
+    const auto position = [&](std::uint32_t cell) { return std::lower_bound(cells.begin(), cells.end(), cell) - cells.begin(); };
+    for (std::uint32_t b = 0; b < blocks.cell.size(); ++b) block_of[static_cast<std::size_t>(position(blocks.cell[b]))] = b;
+
+    blocks.least_cost.assign(cells.size() * kForms, std::numeric_limits<double>::infinity());
+    std::vector<std::uint32_t> listed;
+    for (std::size_t c = 0; c < candidates.size(); ++c) {
+      listed.clear();
+      for (const std::uint32_t cell : candidates[c].cells) listed.push_back(block_of[static_cast<std::size_t>(position(cell))]);
+      append_runs(listed, costs.subspan(c * kForms, kForms), blocks);
+    }
+    for (std::uint32_t b = 0; b < blocks.cell.size(); ++b) {
+      blocks.size.push_back(0);
+      for_each_entry(blocks, b, candidates.front().node, [&](std::uint32_t, double) { ++blocks.size.back(); });
+    }
     return blocks;
   }
 
- private:
-  void number_blocks() {
-    for (const CellGroup& group : group_cells(cells_, subdivision_, index_.leaf_level()))
-      for (const std::uint32_t cell : group.cells) {
-        block_[position(cell)] = static_cast<std::uint32_t>(order_.size());
-        order_.push_back(position(cell));
-      }
+  /// Calls visit(cpv, worth) where some candidate gains, in ascending order.
+  template <class Visit>
+  void for_each_entry(const NodeBlocks& blocks, std::uint32_t block, std::uint32_t node, Visit&& visit) const {
+    const IdRange cpvs = index_.cpvs(blocks.cell[block]);
+    for (std::uint32_t p = cpvs.begin; p < cpvs.end; ++p) {
+      const Cpv& cpv = subdivision_.cpvs[p];
+      const double worth_ms = index_.terms_ms(cpv, node);
+      if (worth_ms > blocks.least_cost[block * kForms + form_of(cpv)]) visit(p, worth_ms);
+    }
   }
 
-  void append_runs(const std::vector<std::uint32_t>& cells, const double* costs, NodeBlocks& blocks) {
-    std::vector<std::uint32_t> listed;
-    for (const std::uint32_t cell : cells) {
-      const std::uint32_t at = position(cell);
-      listed.push_back(block_[at]);
-      for (std::uint32_t form = 0; form < kForms; ++form)
-        least_cost_[at * kForms + form] = std::min(least_cost_[at * kForms + form], costs[form]);
-    }
+ private:
+  static void append_runs(std::vector<std::uint32_t>& listed, std::span<const double> costs, NodeBlocks& blocks) {
     std::sort(listed.begin(), listed.end());
     const std::size_t before = blocks.runs.size();
     for (const std::uint32_t block : listed) {
+      for (std::uint32_t form = 0; form < kForms; ++form) {
+        double& least = blocks.least_cost[block * kForms + form];
+        least = std::min(least, costs[form]);
+      }
       if (blocks.runs.size() > before && blocks.runs.back().end == block)
         ++blocks.runs.back().end;
       else
@@ -87,56 +98,26 @@ class BlockMaker {
     blocks.run_count.push_back(static_cast<std::uint32_t>(blocks.runs.size() - before));
   }
 
-  void append_block(std::uint32_t at, NodeBlocks& blocks) const {
-    const std::size_t before = blocks.cpv.size();
-    const IdRange cpvs = index_.cpvs(cells_[at]);
-    for (std::uint32_t p = cpvs.begin; p < cpvs.end; ++p) {
-      const Cpv& cpv = subdivision_.cpvs[p];
-      const double worth_ms = index_.terms_ms(cpv, candidates_.front().node);
-      if (worth_ms <= least_cost_[at * kForms + form_of(cpv)]) continue;
-      blocks.cpv.push_back(p);
-      blocks.worth.push_back(worth_ms);
-    }
-    blocks.block_size.push_back(static_cast<std::uint32_t>(blocks.cpv.size() - before));
-  }
-
-  [[nodiscard]] std::uint32_t position(std::uint32_t cell) const {
-    return static_cast<std::uint32_t>(std::lower_bound(cells_.begin(), cells_.end(), cell) - cells_.begin());
-  }
-
   const CellIndex& index_;
   const Subdivision& subdivision_;
-  std::span<const Candidate> candidates_;
-  std::vector<std::uint32_t> cells_;  // ascending
-  std::vector<std::uint32_t> block_;  // per position in cells_
-  std::vector<std::uint32_t> order_;  // positions by block
-  std::vector<double> least_cost_;    // per position and form
 };
 
-void append(const NodeBlocks& blocks, SelectionProblem& problem) {
-  const std::uint32_t first = problem.block_count();
-  for (const std::uint32_t size : blocks.block_size) problem.block_offset.push_back(problem.block_offset.back() + size);
-  problem.cpv.insert(problem.cpv.end(), blocks.cpv.begin(), blocks.cpv.end());
-  problem.worth.insert(problem.worth.end(), blocks.worth.begin(), blocks.worth.end());
-  for (const BlockRun& run : blocks.runs) problem.runs.push_back({first + run.begin, first + run.end});
-  for (const std::uint32_t count : blocks.run_count) problem.run_offset.push_back(problem.run_offset.back() + count);
-}
-
-/// So that nothing is copied while it grows: at city scale these are most of the memory.
-void reserve(const std::vector<NodeBlocks>& all, SelectionProblem& problem) {
-  std::size_t blocks = 0, entries = 0, runs = 0;
-  for (const NodeBlocks& of_node : all) {
-    blocks += of_node.block_size.size();
-    entries += of_node.cpv.size();
-    runs += of_node.runs.size();
+/// Numbers the blocks of all nodes through; returns the first of each.
+std::vector<std::uint32_t> lay_out(const std::vector<NodeBlocks>& all, SelectionProblem& problem) {
+  std::vector<std::uint32_t> first;
+  std::uint64_t entries = 0;
+  for (const NodeBlocks& blocks : all) {
+    first.push_back(problem.block_count());
+    for (const std::uint32_t size : blocks.size) problem.block_offset.push_back(static_cast<std::uint32_t>(entries += size));
+    for (const BlockRun& run : blocks.runs) problem.runs.push_back({first.back() + run.begin, first.back() + run.end});
+    for (const std::uint32_t count : blocks.run_count) problem.run_offset.push_back(problem.run_offset.back() + count);
   }
   if (entries >= UINT32_MAX)
-    throw Failure(ErrorWord::kBadUsage, "the covering problem has " + std::to_string(entries) +
-                                            " (cluster, region) pairs, which violates < 2^32 - 1; raise the budget or the leaf size");
-  problem.block_offset.reserve(blocks + 1);
-  problem.cpv.reserve(entries);
-  problem.worth.reserve(entries);
-  problem.runs.reserve(runs);
+    throw Failure(ErrorWord::kBadUsage, "the covering problem's " + std::to_string(entries) +
+                                            " (cluster, region) pairs violate < 2^32 - 1; raise the budget or the leaf size");
+  problem.cpv.resize(entries);
+  problem.worth.resize(entries);
+  return first;
 }
 
 }  // namespace
@@ -169,20 +150,24 @@ SelectionProblem make_selection_problem(const Hierarchy& hierarchy, const Subdiv
   problem.cost.resize(list.size() * kForms);
   for (std::uint32_t c = 0; c < list.size(); ++c) set_impostor(problem, c, list[c].bytes, list[c].cost, model, camera);
 
+  // Twice through the terms: once to know how large it gets, once to write in place. At city scale this is most of the memory.
   const CellIndex index(hierarchy, subdivision);
+  const BlockMaker maker(index, subdivision);
   const auto runs = node_runs(list);
   std::vector<NodeBlocks> blocks(runs.size());
   parallel_for(runs.size(), threads, work, [&](std::size_t run) {
     const auto [begin, end] = runs[run];
-    blocks[run] =
-        BlockMaker(index, subdivision, std::span(list).subspan(begin, end - begin)).make(std::span(problem.cost).subspan(begin * kForms));
+    blocks[run] = maker.make(std::span(list).subspan(begin, end - begin), std::span(problem.cost).subspan(begin * kForms));
   });
-  reserve(blocks, problem);
-  problem.run_offset.reserve(list.size() + 1);
-  for (NodeBlocks& of_node : blocks) {
-    append(of_node, problem);
-    of_node = {};
-  }
+  const auto first_block = lay_out(blocks, problem);
+  parallel_for(runs.size(), threads, work, [&](std::size_t run) {
+    std::uint32_t entry = problem.block_offset[first_block[run]];
+    for (std::uint32_t b = 0; b < blocks[run].cell.size(); ++b)
+      maker.for_each_entry(blocks[run], b, list[runs[run].begin].node, [&](std::uint32_t cpv, double worth_ms) {
+        problem.cpv[entry] = cpv;
+        problem.worth[entry++] = worth_ms;
+      });
+  });
   return problem;
 }
 

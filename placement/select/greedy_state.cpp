@@ -19,22 +19,21 @@ bool GreedyState::is_met(std::uint32_t cpv) const {
   return std::all_of(residual, residual + problem_.stages, [](double r) { return r <= 0.0; });
 }
 
-bool GreedyState::ancestor_in_use(const Cpv& state, std::uint32_t node) const {
-  const std::uint32_t rank = order_.first(node);
-  const auto after =
-      std::lower_bound(state.in_use.begin(), state.in_use.end(), rank, [](const InUse& used, std::uint32_t r) { return used.rank < r; });
-  return after != state.in_use.begin() && order_.last(problem_.node[std::prev(after)->candidate]) >= rank;
+// Impostors in use are disjoint, and the node of each starts with a net of its own: whatever comes last before `node` lies in the only one
+// that can reach over it.
+GreedyState::Range GreedyState::inside(const Cpv& state, std::uint32_t node) const {
+  const std::uint32_t first = order_.first(node);
+  const std::uint32_t last = order_.last(node);
+  const auto begin = std::ranges::lower_bound(state.accepted, first, {}, &Accepted::rank);
+  auto end = begin;
+  while (end != state.accepted.end() && end->rank <= last) ++end;
+  return {static_cast<std::size_t>(begin - state.accepted.begin()), static_cast<std::size_t>(end - state.accepted.begin()),
+          begin != state.accepted.begin() && std::prev(begin)->used_last >= first};
 }
 
-GreedyState::Range GreedyState::accepted_inside(const Cpv& state, std::uint32_t node) const {
-  const auto begin = std::lower_bound(state.net_rank.begin(), state.net_rank.end(), order_.first(node));
-  const auto end = std::upper_bound(begin, state.net_rank.end(), order_.last(node));
-  return {static_cast<std::size_t>(begin - state.net_rank.begin()), static_cast<std::size_t>(end - state.net_rank.begin())};
-}
-
-double GreedyState::net(const Cpv& state, Range inside, const Serving& serving, std::uint32_t stage) const {
+double GreedyState::net(const Cpv& state, const Range& range, const Serving& serving, std::uint32_t stage) const {
   double represented = 0.0;
-  for (std::size_t i = inside.begin; i < inside.end; ++i) represented += state.net[i * problem_.stages + stage];
+  for (std::size_t i = range.begin; i < range.end; ++i) represented += state.net[i * problem_.stages + stage];
   return problem_.gain(serving.candidate, serving.entry, stage) - represented;
 }
 
@@ -42,12 +41,11 @@ double GreedyState::term(const Serving& serving) const {
   const std::uint32_t p = problem_.cpv[serving.entry];
   if (met_[p]) return 0.0;
   const Cpv& state = cpvs_[p];
-  const std::uint32_t node = problem_.node[serving.candidate];
-  if (ancestor_in_use(state, node)) return 0.0;
-  const Range inside = accepted_inside(state, node);
+  const Range range = inside(state, problem_.node[serving.candidate]);
+  if (range.ancestor_in_use) return 0.0;
   double sum = 0.0;
   for (std::uint32_t k = 0; k < problem_.stages; ++k) {
-    const double net_ms = net(state, inside, serving, k);
+    const double net_ms = net(state, range, serving, k);
     if (net_ms < 0.0) return 0.0;
     sum += std::min(net_ms, std::max(residual_[static_cast<std::size_t>(p) * problem_.stages + k], 0.0));
   }
@@ -71,19 +69,13 @@ void GreedyState::use(const Serving& serving) {
   const std::uint32_t node = problem_.node[serving.candidate];
   Cpv& state = cpvs_[p];
 
-  const Range inside = accepted_inside(state, node);
+  const Range range = inside(state, node);
   std::vector<double> nets(problem_.stages);
-  for (std::uint32_t k = 0; k < problem_.stages; ++k) nets[k] = net(state, inside, serving, k);
+  for (std::uint32_t k = 0; k < problem_.stages; ++k) nets[k] = net(state, range, serving, k);
   for (std::uint32_t k = 0; k < problem_.stages; ++k) residual_[static_cast<std::size_t>(p) * problem_.stages + k] -= nets[k];
-  state.net_rank.insert(state.net_rank.begin() + static_cast<std::ptrdiff_t>(inside.begin), order_.first(node));
-  state.net.insert(state.net.begin() + static_cast<std::ptrdiff_t>(inside.begin * problem_.stages), nets.begin(), nets.end());
-
-  const auto below = [&](const InUse& used) { return used.rank >= order_.first(node) && used.rank <= order_.last(node); };
-  std::erase_if(state.in_use, below);
-  const InUse added{order_.first(node), serving.candidate};
-  state.in_use.insert(
-      std::lower_bound(state.in_use.begin(), state.in_use.end(), added, [](const InUse& a, const InUse& b) { return a.rank < b.rank; }),
-      added);
+  for (std::size_t i = range.begin; i < range.end; ++i) state.accepted[i].used_last = order_.last(node);
+  state.accepted.insert(state.accepted.begin() + static_cast<std::ptrdiff_t>(range.begin), {order_.first(node), order_.last(node)});
+  state.net.insert(state.net.begin() + static_cast<std::ptrdiff_t>(range.begin * problem_.stages), nets.begin(), nets.end());
   if (!met_[p] && is_met(p)) {
     met_[p] = true;
     --unmet_;

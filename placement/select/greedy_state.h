@@ -34,23 +34,24 @@ class GreedyState {
   [[nodiscard]] bool all_met() const { return unmet_ == 0; }
 
  private:
-  struct InUse {
-    std::uint32_t rank = 0;  // of the candidate's node
-    std::uint32_t candidate = 0;
+  /// A net that was accepted, and where the impostor ends that stands for its cluster now: that one, or a larger one accepted since.
+  struct Accepted {
+    std::uint32_t rank = 0;       // of the node
+    std::uint32_t used_last = 0;  // last rank of the node in use
   };
   struct Cpv {
-    std::vector<InUse> in_use;            // an antichain, by rank
-    std::vector<std::uint32_t> net_rank;  // of every net ever accepted, ascending
-    std::vector<double> net;              // `stages` values for each of net_rank
+    std::vector<Accepted> accepted;  // by rank; each lies inside the node of an impostor in use
+    std::vector<double> net;         // `stages` values for each
   };
+  /// The part of `accepted` inside a node.
   struct Range {
     std::size_t begin = 0, end = 0;
+    bool ancestor_in_use = false;
   };
 
   [[nodiscard]] bool is_met(std::uint32_t cpv) const;
-  [[nodiscard]] bool ancestor_in_use(const Cpv& state, std::uint32_t node) const;
-  [[nodiscard]] Range accepted_inside(const Cpv& state, std::uint32_t node) const;
-  [[nodiscard]] double net(const Cpv& state, Range inside, const Serving& serving, std::uint32_t stage) const;
+  [[nodiscard]] Range inside(const Cpv& state, std::uint32_t node) const;
+  [[nodiscard]] double net(const Cpv& state, const Range& range, const Serving& serving, std::uint32_t stage) const;
   [[nodiscard]] double term(const Serving& serving) const;
   void use(const Serving& serving);
 
