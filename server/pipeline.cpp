@@ -15,6 +15,7 @@
 #include "render/impostor/impostor_glb.h"
 #include "server/files/output_folder.h"
 #include "server/files/placement_json.h"
+#include "server/job/curves.h"
 #include "server/job/left_out.h"
 #include "server/job/metrics.h"
 #include "server/job/reach.h"
@@ -32,7 +33,7 @@ namespace {
 
 using nlohmann::json;
 
-// A scene whose lowest reachable budget is no lower than this share of its worst view is one that impostors cannot help.
+// A scene whose lowest reachable budget is no lower than this share of its highest bound is one that impostors cannot help.
 constexpr double kHelpfulShare = 0.98;
 constexpr const char* kNoProblemViews = "no problem views: every region's bound is within the budget";
 
@@ -92,10 +93,10 @@ void add_reach(Surveyed& job, const JobSpec& spec, double budget_ms, StageClock&
 }
 
 // `budget_ms`: of a placement; 0: none.
-Surveyed survey_scene(const JobFiles& files, const JobSpec& spec, double budget_ms, StageClock& clock, const WorkBudget& budget) {
-  Surveyed job;
+void survey_scene(const JobFiles& files, const JobSpec& spec, double budget_ms, StageClock& clock, const WorkBudget& budget,
+                  Surveyed& job) {
   job.target = read_target(files.target);
-  job.world = build_world(files.scene, spec, clock, budget);
+  build_world(files.scene, spec, clock, budget, job.world);
   job.candidate_options = candidate_options_of(spec, job.world.threads);
   add_reach(job, spec, budget_ms, clock, budget);
   clock.run("survey", [&] {
@@ -106,7 +107,6 @@ Surveyed survey_scene(const JobFiles& files, const JobSpec& spec, double budget_
     job.survey =
         survey_views(job.world.scene, job.world.view_space, job.reach.subdivision, job.target.model, job.world.camera, options, budget);
   });
-  return job;
 }
 
 std::string milliseconds(double value) {
@@ -115,22 +115,28 @@ std::string milliseconds(double value) {
   return text;
 }
 
-// A bound stands above the views it holds for, so a certified budget may lie above the worst view that was sampled: say which case this is.
+// "tree_6, tree_5, house 3"
+std::string names_of(const std::vector<std::uint32_t>& objects, const Scene& scene) {
+  std::string names;
+  for (const auto object : objects) names += (names.empty() ? "" : ", ") + scene.objects[object].name;
+  return names;
+}
+
+// How low a budget can be promised, with and without impostors. These are bounds: the estimate of the worst sampled view stands below them,
+// and says which budgets may hold although nobody can promise it.
 std::string verdict(const Surveyed& job) {
+  const ReachSummary& reach = job.reach;
+  const std::string without = milliseconds(reach.worst_bound_ms);
+  if (!reach.known) return "no view needs impostors: every bound is within " + without;
+  const std::string blockers = names_of(reach.blockers, job.world.scene);
+  if (reach.all_ms >= kHelpfulShare * reach.worst_bound_ms)
+    return "impostors cannot help the slowest views on this target: their bound stays at " + without +
+           ", near or light geometry, above all " + blockers;
+  const std::string sentence = "impostors help: every view can be promised " + milliseconds(reach.all_ms) + ", without them " + without;
   const double worst_ms = job.survey.worst_frame_ms;
-  std::string sentence;
-  if (!job.reach.known) return "no view needs impostors: every bound is within " + milliseconds(job.reach.worst_bound_ms);
-  if (job.reach.all_ms < kHelpfulShare * worst_ms)
-    return "impostors can help: every view can be certified to stay within " + milliseconds(job.reach.all_ms);
-  if (job.reach.all_ms < kHelpfulShare * job.reach.worst_bound_ms)
-    sentence = "impostors lower the highest bound from " + milliseconds(job.reach.worst_bound_ms) + " to " +
-               milliseconds(job.reach.all_ms) + ", but no budget below the worst sampled view (" + milliseconds(worst_ms) +
-               ") can be certified for all views; what blocks is above all";
-  else
-    sentence = "impostors cannot help the slowest views on this target: what remains there is near or light geometry, above all";
-  for (const auto object : job.reach.blockers) sentence += " " + job.world.scene.objects[object].name + ",";
-  sentence.back() = '.';
-  return sentence;
+  if (reach.all_ms < worst_ms) return sentence + "; the worst sampled view is estimated at " + milliseconds(worst_ms);
+  return sentence + "; since the worst sampled view is estimated at " + milliseconds(worst_ms) +
+         ", a budget between may hold without any impostor, but cannot be promised, above all because of " + blockers;
 }
 
 json survey_json(const Surveyed& job) {
@@ -212,6 +218,20 @@ json bound_json(const SelectionSummary& summary) {
 json cpv_json(const Placement& placement) {
   const auto solved = static_cast<std::uint64_t>(std::ranges::count_if(placement.cpvs, [](const auto& cpv) { return cpv.solved; }));
   return {{"count", placement.cpvs.size()}, {"solved", solved}, {"unsolved", placement.cpvs.size() - solved}};
+}
+
+// Error against run time, of every stage that has a dial and was run.
+json curves_json(const Surveyed& job, const JobSpec& spec, const Subdivision& subdivision, const SelectedImpostors& selected,
+                 std::span<const Impostor> impostors, const StageClock& clock, const WorkBudget& budget) {
+  const World& world = job.world;
+  const TimeModel& model = job.target.model;
+  const std::vector<double> laps = clock.laps("view_space");
+  return {{"visibility", visibility_curve(world, spec, budget)},
+          {"view_space", view_space_curve(world, model, subdivision, laps.back() - laps[laps.size() - 2],
+                                          model.predicted_budget_ms(spec.budget_ms), job.survey.worst_frame_ms, budget)},
+          {"select", select_curve(selected, clock)},
+          {"bake_rounds", bake_rounds_curve(selected, clock)},
+          {"bake", bake_curve(world, impostors, budget)}};
 }
 
 struct Placed {
@@ -296,7 +316,8 @@ JobOutcome run_survey(const JobFiles& files, const JobSpec& spec, const WorkBudg
   std::optional<OutputFolder> folder;
   if (!files.folder.empty()) folder.emplace(files.folder, fingerprint("survey", files, spec));
   StageClock clock(budget);
-  const Surveyed job = survey_scene(files, spec, 0.0, clock, budget);
+  Surveyed job;
+  survey_scene(files, spec, 0.0, clock, budget, job);
   JobOutcome outcome;
   outcome.metrics = common_metrics(job, clock);
   outcome.metrics["causes"] = causes_json(job.world, job.reach.subdivision, job.target.model);
@@ -313,8 +334,11 @@ JobOutcome run_place(const JobFiles& files, const JobSpec& spec, const WorkBudge
   if (!(spec.budget_ms > 0.0)) throw Failure(ErrorWord::kBadUsage, "--budget-ms " + std::to_string(spec.budget_ms) + " violates: > 0");
   OutputFolder folder(files.folder, fingerprint("place", files, spec));
   StageClock clock(budget);
-  Surveyed job = survey_scene(files, spec, spec.budget_ms, clock, budget);
+  Surveyed job;
+  survey_scene(files, spec, spec.budget_ms, clock, budget, job);
   const Placed placed = place_impostors(job, spec, clock, budget);
+  const json curves =
+      clock.run("curves", [&] { return curves_json(job, spec, placed.subdivision, placed.selected, placed.set.impostors, clock, budget); });
   const VerifyResult verified = clock.run("verify", [&] { return verify(job, placed, spec, budget); });
 
   const json placement = placement_to_json(placement_file(job, placed, spec), job.world.scene);
@@ -334,6 +358,7 @@ JobOutcome run_place(const JobFiles& files, const JobSpec& spec, const WorkBudge
   metrics["select"] = select_metrics(placed.selected, placed.placement);
   metrics["memory"] = memory_json(placed.placement, placed.set);
   metrics["bound"] = bound_json(placed.selected.selection.summary);
+  metrics["curves"] = curves;
   metrics["verify"] = verify_json(verified);
   metrics["image"] = image_json(verified);
   metrics["heat_map"] = heat_map_json(placed.subdivision, &placed.placement, job.target.model);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
@@ -34,6 +35,11 @@ class StageClock {
     leave_out(stage, std::move(reason));
   }
   [[nodiscard]] const nlohmann::json& seconds() const { return seconds_; }
+  /// Seconds that the stage had taken in all, after each of its runs.
+  [[nodiscard]] std::vector<double> laps(const std::string& stage) const {
+    const auto found = laps_.find(stage);
+    return found != laps_.end() ? found->second : std::vector<double>();
+  }
   [[nodiscard]] const nlohmann::json& left_out() const { return left_out_; }
 
  private:
@@ -42,7 +48,9 @@ class StageClock {
     Timer(StageClock& clock, const std::string& name) : clock_(clock), name_(name) {}
     ~Timer() {
       const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start_;
-      clock_.seconds_[name_] = clock_.seconds_.value(name_, 0.0) + elapsed.count();
+      const double seconds = clock_.seconds_.value(name_, 0.0) + elapsed.count();
+      clock_.seconds_[name_] = seconds;
+      clock_.laps_[name_].push_back(seconds);
       clock_.budget_.report(name_, 1.0);
     }
     Timer(const Timer&) = delete;
@@ -56,6 +64,7 @@ class StageClock {
 
   const WorkBudget& budget_;
   nlohmann::json seconds_ = nlohmann::json::object();
+  std::map<std::string, std::vector<double>> laps_;
   nlohmann::json left_out_ = nlohmann::json::array();
 };
 

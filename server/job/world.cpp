@@ -160,8 +160,7 @@ int thread_count(const JobSpec& spec) {
   return spec.threads > 0 ? spec.threads : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
 }
 
-World build_world(const std::filesystem::path& scene_file, const JobSpec& spec, StageClock& clock, const WorkBudget& budget) {
-  World world;
+void build_world(const std::filesystem::path& scene_file, const JobSpec& spec, StageClock& clock, const WorkBudget& budget, World& world) {
   world.threads = thread_count(spec);
   world.camera = camera_of(spec);
   world.view_space_options = view_space_options(spec);
@@ -177,7 +176,6 @@ World build_world(const std::filesystem::path& scene_file, const JobSpec& spec, 
   clock.run("visibility", [&] { add_visibility(spec, world, clock, budget); });
   world.quality = quality_of(spec, world.view_space.kind);
   world.quality.leave_out = !forced(spec, "bake");
-  return world;
 }
 
 }  // namespace standin

@@ -22,7 +22,12 @@ namespace standin {
 [[nodiscard]] BakeQuality quality_of(const JobSpec& spec, ViewSpaceKind view_space);
 [[nodiscard]] int thread_count(const JobSpec& spec);
 
+/// Stays where it is: the raytracer refers to the scene.
 struct World {
+  World() = default;
+  World(const World&) = delete;
+  World& operator=(const World&) = delete;
+
   Scene scene;
   Hierarchy hierarchy;
   Camera camera;
@@ -37,6 +42,6 @@ struct World {
 };
 
 /// Stages load, view_space and visibility.
-[[nodiscard]] World build_world(const std::filesystem::path& scene_file, const JobSpec& spec, StageClock& clock, const WorkBudget& budget);
+void build_world(const std::filesystem::path& scene_file, const JobSpec& spec, StageClock& clock, const WorkBudget& budget, World& world);
 
 }  // namespace standin

@@ -27,7 +27,7 @@ function schemaKeys() {
 function otherValue(setting) {
   if (setting.enum) return setting.enum.find((word) => word !== setting.default) ?? setting.default;
   if (setting.type === "string") return setting.pattern ? "orbit" : "cm";
-  if (setting.type === "array") return setting.items.type === "number" ? "33,44" : "word";
+  if (setting.type === "array") return setting.items.type === "number" ? "33,44" : (setting.items.enum?.[0] ?? "word");
   const least = setting.exclusiveMinimum ?? setting.minimum ?? 0;
   const value = setting.default + 1;
   return String(value <= (setting.maximum ?? Infinity) ? value : (setting.default + least) / 2);
@@ -52,7 +52,7 @@ test("every offered flag sets its key", () => {
       const value = otherValue(setting);
       const config = JSON.parse(expectExit(0, command, flag, value, "--print-config").out);
       const now = key.split(".").reduce((section, name) => section[name], config);
-      const wanted = setting.type === "string" ? value : setting.type !== "array" ? Number(value) : value === "word" ? ["word"] : [33, 44];
+      const wanted = setting.type === "string" ? value : setting.type !== "array" ? Number(value) : setting.items.type === "number" ? [33, 44] : [value];
       assert.deepEqual(now, wanted, `standin ${command} ${flag} ${value}`);
     }
 });

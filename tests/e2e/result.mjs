@@ -88,6 +88,26 @@ test("metrics.json has its fields, all numbers are finite, and sums add up", () 
   assert.equal(placement.impostors.reduce((sum, impostor) => sum + impostor.texture_bytes, 0), metrics.memory.texture_bytes);
 });
 
+test("curves of error against run time, and the atlases' bytes in GPU formats", () => {
+  for (const name of ["visibility", "view_space", "select", "bake_rounds", "bake"]) {
+    const curve = metrics.curves[name];
+    assert.ok(Array.isArray(curve) && (curve.length > 0 || name === "visibility"), name);
+    for (const { seconds, work, error, unit } of curve)
+      assert.ok(seconds >= 0 && work > 0 && error >= 0 && unit.length > 0, `${name}: ${JSON.stringify(curve)}`);
+  }
+  const errors = (name) => metrics.curves[name].map((point) => point.error);
+  const falls = (list) => list.every((value, i) => i === 0 || value <= list[i - 1]);
+  assert.ok(falls(errors("view_space")) && falls(errors("bake")), "more time, less error");
+  const last = metrics.curves.bake.at(-1);
+  assert.ok(Math.abs(last.work - metrics.memory.texture_bytes) < 1e-6 * last.work, "the finest bake is the one that ships");
+  assert.equal(metrics.curves.bake_rounds.at(-1).error, metrics.memory.texture_bytes);
+
+  const { bc1, bc3, bc7, etc2_rgb8a1, etc2_rgba8 } = metrics.memory.gpu_bytes;
+  assert.deepEqual([bc3, bc7, etc2_rgb8a1, etc2_rgba8], [2 * bc1, 2 * bc1, bc1, 2 * bc1]);
+  const texels = (metrics.memory.texture_bytes + metrics.memory.atlas_padding_bytes) / 4;
+  assert.ok(bc7 >= texels && bc7 < 1.05 * texels, `one byte a texel, in whole blocks: ${bc7} against ${texels}`);
+});
+
 test("images keep their guarantee", () => {
   assert.equal(metrics.image.gap_pixels, 0);
   assert.ok(metrics.image.max_parallax_ratio <= 1);

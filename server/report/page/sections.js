@@ -98,7 +98,7 @@ function atlasSection({ pictures }) {
 
 const CURVE_TITLES = {
   estimator: "Time model: held-out error", visibility: "Visibility: missed share of rays", view_space: "View space: how loose the bounds are",
-  candidates: "Candidates: memory", select: "Selection: gap to the lower bound", bake: "Bake: image error",
+  candidates: "Candidates: memory", select: "Selection: gap to the lower bound", bake_rounds: "Baking and repair: memory", bake: "Bake: texel size",
 };
 
 function curveFigure(name, points) {
@@ -130,7 +130,7 @@ function curvesSection({ metrics }) {
   return section("curves", "What more run time would buy", "Each stage that approximates can be made more exact for more time; these points are from this run.", element("div", { class: "side" }, ...figures));
 }
 
-const STAGE_ORDER = ["load", "view_space", "visibility", "survey", "size_model", "candidates", "select", "bake", "assemble", "verify"];
+const STAGE_ORDER = ["load", "view_space", "visibility", "survey", "size_model", "candidates", "select", "bake", "assemble", "curves", "verify"];
 
 function stagesSection({ metrics }) {
   const rank = ([name]) => (STAGE_ORDER.includes(name) ? STAGE_ORDER.indexOf(name) : STAGE_ORDER.length);

@@ -1,0 +1,152 @@
+#include "server/job/curves.h"
+
+#include <algorithm>
+#include <chrono>
+#include <numeric>
+
+#include "render/base/error.h"
+#include "render/base/parallel.h"
+#include "render/impostor/atlas.h"
+#include "render/impostor/texture_pyramid.h"
+#include "render/visibility/visible_set.h"
+
+namespace standin {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::size_t kRegions = 16;
+constexpr std::size_t kImpostors = 8;
+
+json point(double seconds, double work, double error, const char* unit) {
+  return {{"seconds", seconds}, {"work", work}, {"error", error}, {"unit", unit}};
+}
+
+template <class Work>
+double seconds_of(const Work& work) {
+  const auto start = std::chrono::steady_clock::now();
+  work();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// `count` positions at most, spread evenly over [0, size).
+std::vector<std::size_t> spread(std::size_t size, std::size_t count) {
+  std::vector<std::size_t> positions;
+  const std::size_t taken = std::min(size, count);
+  for (std::size_t i = 0; i < taken; ++i) positions.push_back(i * size / taken);
+  return positions;
+}
+
+/// Cumulative seconds of the last `count` runs that were followed by `after` others.
+std::vector<double> last_laps(std::vector<double> laps, std::size_t count, std::size_t after) {
+  laps.resize(laps.size() - std::min(laps.size(), after));
+  if (laps.size() > count) laps.erase(laps.begin(), laps.end() - static_cast<std::ptrdiff_t>(count));
+  return laps;
+}
+
+/// Texture bytes of an impostor baked with other texels; as it is where that is impossible.
+double bytes_at(const World& world, const Impostor& impostor, const TexturePyramids& textures, const BakeQuality& quality,
+                const WorkBudget& budget) {
+  try {
+    return static_cast<double>(
+        texture_bytes(bake_layered(world.scene, textures, {impostor.objects, impostor.view_cell}, world.camera, quality, budget)));
+  } catch (const Failure& failure) {
+    if (failure.word() != ErrorWord::kImpostorImpossible) throw;
+    return static_cast<double>(texture_bytes(impostor));
+  }
+}
+
+}  // namespace
+
+json visibility_curve(const World& world, const JobSpec& spec, const WorkBudget& budget) {
+  json curve = json::array();
+  if (world.visibility.cells.empty()) return curve;
+  std::vector<Box> regions;
+  for (const auto i : spread(world.visibility.cells.size(), kRegions))
+    regions.push_back(world.view_space.cell_box(world.visibility.cells[i]));
+  const double scale = static_cast<double>(world.visibility.cells.size()) / static_cast<double>(regions.size());
+  for (const std::uint64_t divisor : {64, 16, 4, 1}) {
+    const std::uint64_t rays = std::max<std::uint64_t>(1, spec.visibility_rays / divisor);
+    double missed = 0.0;
+    const double seconds = seconds_of([&] {
+      for (const auto& set : sample_visible_sets(world.scene, *world.raytracer, regions, {rays, spec.seed}, world.threads, budget))
+        missed += set.missed_ray_share / static_cast<double>(regions.size());
+    });
+    curve.push_back(point(scale * seconds, static_cast<double>(rays), missed, "share of rays that would find something new"));
+  }
+  return curve;
+}
+
+json view_space_curve(const World& world, const TimeModel& model, const Subdivision& subdivision, double seconds,
+                      double predicted_budget_ms, double worst_sampled_ms, const WorkBudget& budget) {
+  constexpr const char* kUnit = "highest bound over worst sampled view";
+  json curve = json::array();
+  if (!(worst_sampled_ms > 0.0)) return curve;
+  const auto add = [&](double taken, const Subdivision& found) {
+    curve.push_back(point(taken, static_cast<double>(found.cells.size()), found.worst_predicted_ms / worst_sampled_ms, kUnit));
+  };
+  SubdivisionOptions options;
+  options.threads = world.threads;
+  options.predicted_budget_ms = predicted_budget_ms;
+  ViewSpace space = world.view_space;
+  for (space.finest_level = space.leaf_level; space.finest_level < world.view_space.finest_level; ++space.finest_level) {
+    Subdivision coarse;
+    const double taken = seconds_of([&] {
+      coarse = subdivide(world.scene, world.hierarchy.rank, space, world.visibility, model, world.camera, world.view_space_options, options,
+                         budget);
+    });
+    add(taken, coarse);
+  }
+  add(seconds, subdivision);
+  return curve;
+}
+
+json select_curve(const SelectedImpostors& selected, const StageClock& clock) {
+  json curve = json::array();
+  const double bound_bytes = selected.selection.summary.lower_bound_bytes;
+  const auto laps = last_laps(clock.laps("select"), selected.rounds.size(), 1);
+  for (std::size_t i = 0; i < laps.size() && i < selected.rounds.size(); ++i)
+    if (const double bytes = selected.rounds[i].real_bytes; bytes > 0.0)
+      curve.push_back(
+          point(laps[i], static_cast<double>(i + 1), (bytes - bound_bytes) / bytes, "gap to the lower bound, share of the bytes"));
+  return curve;
+}
+
+json bake_rounds_curve(const SelectedImpostors& selected, const StageClock& clock) {
+  json curve = json::array();
+  const auto laps = last_laps(clock.laps("bake"), selected.rounds.size(), 0);
+  double baked = 0.0;
+  for (std::size_t i = 0; i < laps.size() && i < selected.rounds.size(); ++i) {
+    baked += selected.rounds[i].baked;
+    curve.push_back(point(laps[i], baked, selected.rounds[i].real_bytes, "bytes of what is chosen"));
+  }
+  return curve;
+}
+
+json bake_curve(const World& world, std::span<const Impostor> impostors, const WorkBudget& budget) {
+  json curve = json::array();
+  double all_bytes = 0.0, sample_bytes = 0.0;
+  for (const auto& impostor : impostors) all_bytes += static_cast<double>(texture_bytes(impostor));
+  std::vector<const Impostor*> sample;
+  for (const auto i : spread(impostors.size(), kImpostors)) {
+    sample.push_back(&impostors[i]);
+    sample_bytes += static_cast<double>(texture_bytes(impostors[i]));
+  }
+  if (!(sample_bytes > 0.0)) return curve;
+  const double scale = all_bytes / sample_bytes;
+  const TexturePyramids textures(world.scene);
+  for (const double factor : {4.0, 2.0, 1.0}) {
+    BakeQuality quality = world.quality;
+    quality.texel_scale *= factor;
+    std::vector<double> bytes(sample.size());
+    const double seconds = seconds_of([&] {
+      parallel_for(sample.size(), world.threads, budget,
+                   [&](std::size_t i) { bytes[i] = bytes_at(world, *sample[i], textures, quality, budget); });
+    });
+    curve.push_back(point(scale * seconds, scale * std::accumulate(bytes.begin(), bytes.end(), 0.0), factor * world.quality.texel_scale,
+                          "side of a texel in centre pixels"));
+  }
+  return curve;
+}
+
+}  // namespace standin
