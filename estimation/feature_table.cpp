@@ -9,51 +9,11 @@ namespace standin {
 namespace {
 
 constexpr std::uint32_t kSamplesPerMesh = 64;
-// Bounds stand this much higher, since an estimate adds the same terms in another order and from transformed points.
-constexpr double kRounding = 1e-9;
-
 constexpr std::array<Term, kPixelKindCount> kPixelTerm = {Term::kPlainPixels, Term::kTexturedPixels, Term::kMaskedPixels};
 
 /// The matrix that takes vector areas where `m` takes points.
 Mat3 cofactor(const Mat3& m) {
   return {glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1])};
-}
-
-/// Largest eigenvalue of a symmetric positive semidefinite 3x3 matrix, from above: the infinity norm of M^16 bounds the 16th power.
-double largest_eigenvalue_bound(Mat3 m) {
-  const double trace = m[0][0] + m[1][1] + m[2][2];
-  if (!(trace > 0.0)) return 0.0;
-  m /= trace;
-  for (int squaring = 0; squaring < 4; ++squaring) m = m * m;
-  double norm = 0.0;
-  for (int row = 0; row < 3; ++row) norm = std::max(norm, std::abs(m[0][row]) + std::abs(m[1][row]) + std::abs(m[2][row]));
-  return trace * std::min(1.0, std::pow(norm, 1.0 / 16.0));
-}
-
-/// Area in total and the most of it that faces any one direction: for `patches` moved by `world_area_from_mesh`.
-struct PatchSum {
-  double area_m2 = 0.0;
-  Vec3 vector_area_m2{0.0};
-  Mat3 moments{0.0};  // sum of a a^T / |a|
-
-  void add(const Vec3& vector_area) {
-    const double area = glm::length(vector_area);
-    if (!(area > 0.0)) return;
-    area_m2 += area;
-    vector_area_m2 += vector_area;
-    moments += glm::outerProduct(vector_area, vector_area / area);
-  }
-  /// sum |a.w| <= root; of that, back-face culling leaves sum max(a.w, 0) = (sum |a.w| + (sum a).w) / 2, half where the surface is closed.
-  [[nodiscard]] double facing_m2(bool double_sided) const {
-    const double both_sides_m2 = std::sqrt(area_m2 * largest_eigenvalue_bound(moments));
-    return double_sided ? both_sides_m2 : 0.5 * (both_sides_m2 + glm::length(vector_area_m2));
-  }
-};
-
-PatchSum patch_sum(const std::vector<SurfacePatch>& patches, const Mat3& world_area_from_mesh) {
-  PatchSum sum;
-  for (const SurfacePatch& patch : patches) sum.add(world_area_from_mesh * patch.vector_area_m2);
-  return sum;
 }
 
 struct MeshInEye {
@@ -92,6 +52,33 @@ PartOnScreen part_on_screen(const SurfaceSamples& samples, bool near, const Mesh
   return seen;
 }
 
+/// A mesh where it stands in the world, seen from a box of eyes.
+struct MeshFromBox {
+  MeshFromBox(const Mat4& world_from_mesh_, const ProjectionFromBox& projection_)
+      : world_from_mesh(world_from_mesh_),
+        world_area_from_mesh((glm::determinant(world_from_mesh) < 0.0 ? -1.0 : 1.0) * cofactor(world_from_mesh)),
+        origin(world_from_mesh_[3]),
+        projection(projection_) {}
+  Mat3 world_from_mesh;
+  Mat3 world_area_from_mesh;
+  Vec3 origin;
+  const ProjectionFromBox& projection;
+
+  [[nodiscard]] double most_pixels(const SurfacePatch& patch, bool double_sided) const {
+    return projection.most_pixels(world_from_mesh * patch.point + origin, world_area_from_mesh * patch.vector_area_m2, double_sided);
+  }
+  [[nodiscard]] double most_pixels(const std::vector<SurfacePatch>& patches, bool double_sided) const {
+    double sum = 0.0;
+    for (const SurfacePatch& patch : patches) sum += most_pixels(patch, double_sided);
+    return sum;
+  }
+  [[nodiscard]] double most_covering_triangles(const SurfaceSamples& samples, bool double_sided) const {
+    double sum = 0.0;
+    for (const SurfacePatch& triangle : samples.triangles) sum += std::min(1.0, most_pixels(triangle, double_sided));
+    return samples.triangles_per_sample * sum;
+  }
+};
+
 }  // namespace
 
 PixelKind pixel_kind(const Scene& scene, const Part& part) {
@@ -101,63 +88,23 @@ PixelKind pixel_kind(const Scene& scene, const Part& part) {
 }
 
 FeatureTable::FeatureTable(const Scene& scene, const Camera& camera)
-    : scene_(&scene),
-      camera_(camera),
-      screen_pixels_(static_cast<double>(camera.width) * camera.height),
-      pixels_per_m2_at_1m_((1.0 + kRounding) * greatest_pixels_per_m2_at_1m(camera)) {
+    : scene_(&scene), camera_(camera), screen_pixels_(static_cast<double>(camera.width) * camera.height) {
   samples_.reserve(scene.meshes.size());
   for (const Mesh& mesh : scene.meshes) samples_.push_back(sample_surface(mesh, kSamplesPerMesh));
   shapes_.reserve(scene.objects.size());
   for (const Object& object : scene.objects) shapes_.push_back(shape_of(object));
 }
 
-FeatureTable::ObjectShape FeatureTable::shape_of(const Object& object) {
+FeatureTable::ObjectShape FeatureTable::shape_of(const Object& object) const {
   ObjectShape shape;
   shape.radius_m = 0.5 * object.bounds.diagonal();
-  const Vec3 size = object.bounds.size();
-  shape.half_extent_m = object.bounds.empty() ? 0.0 : 0.5 * std::min({size.x, size.y, size.z});
-  const Mat3 world_area_from_mesh = cofactor(Mat3(object.world_from_object));
-  std::vector<std::array<double, 2>> covering;
   for (std::uint32_t p = object.first_part; p < object.first_part + object.part_count; ++p) {
     const Part& part = scene_->parts[p];
-    const SurfaceSamples& samples = samples_[part.mesh];
-    const PixelKind kind = pixel_kind(*scene_, part);
     shape.counts[Term::kDraws] += 1.0;
-    shape.counts[Term::kTextureSwitches] += kind == PixelKind::kPlain ? 0.0 : 1.0;
+    shape.counts[Term::kTextureSwitches] += pixel_kind(*scene_, part) == PixelKind::kPlain ? 0.0 : 1.0;
     shape.counts[Term::kTriangles] += static_cast<double>(scene_->meshes[part.mesh].triangle_count());
-    const PatchSum far = patch_sum(samples.patches, world_area_from_mesh);
-    const PatchSum near = patch_sum(samples.near_patches, world_area_from_mesh);
-    FacingArea& area = shape.area[static_cast<std::size_t>(kind)];
-    const bool double_sided = scene_->materials[part.material].double_sided;
-    area.total_m2 += std::max(far.area_m2, near.area_m2);
-    area.facing_m2 += std::max(far.facing_m2(double_sided), near.facing_m2(double_sided));
-    for (const SurfacePatch& triangle : samples.triangles)
-      covering.push_back({glm::length(world_area_from_mesh * triangle.vector_area_m2), samples.triangles_per_sample});
   }
-  add_covering(shape, std::move(covering));
   return shape;
-}
-
-void FeatureTable::add_covering(ObjectShape& shape, std::vector<std::array<double, 2>> areas_and_counts) {
-  std::sort(areas_and_counts.begin(), areas_and_counts.end());
-  shape.first_covering = covering_.size();
-  double area_before_m2 = 0.0;
-  for (const auto& [area_m2, count] : areas_and_counts) {
-    covering_.push_back({area_m2, area_before_m2, 0.0});
-    area_before_m2 += area_m2 * count;
-  }
-  covering_.push_back({std::numeric_limits<double>::infinity(), area_before_m2, 0.0});
-  shape.last_covering = covering_.size();
-  double triangles_from = 0.0;
-  for (std::size_t i = areas_and_counts.size(); i-- > 0;)
-    covering_[shape.first_covering + i].triangles_from = triangles_from += areas_and_counts[i][1];
-}
-
-double FeatureTable::covering_triangles(const ObjectShape& shape, double pixels_per_m2) const {
-  const auto first = covering_.begin() + static_cast<std::ptrdiff_t>(shape.first_covering);
-  const auto last = covering_.begin() + static_cast<std::ptrdiff_t>(shape.last_covering);
-  const auto covered = std::partition_point(first, last - 1, [=](const CoveringStep& s) { return s.area_m2 * pixels_per_m2 < 1.0; });
-  return covered->area_before_m2 * pixels_per_m2 + covered->triangles_from;
 }
 
 Features FeatureTable::estimate(std::uint32_t object, const PreparedView& view) const {
@@ -180,22 +127,25 @@ Features FeatureTable::estimate(std::uint32_t object, const PreparedView& view) 
   return features;
 }
 
-Features FeatureTable::bound(std::uint32_t object, double nearest_m) const {
-  if (!(nearest_m >= 0.0)) throw Failure(ErrorWord::kInternal, "features of object " + std::to_string(object) + ": negative distance");
-  const ObjectShape& shape = shapes_[object];
-  Features features = shape.counts;
-  const double distance_m = std::max(nearest_m, camera_.near_m);  // no pixel lies nearer than the near plane
-  const double pixels_per_m2 = pixels_per_m2_at_1m_ / (distance_m * distance_m);
-  // Directions to points of the bounds differ from the one to their centre by a chord of at most this length.
-  const double sine = std::min(1.0, shape.radius_m / std::max(nearest_m + shape.half_extent_m, shape.radius_m));
-  const double chord = std::sqrt(2.0 - 2.0 * std::sqrt(1.0 - sine * sine));
-  for (std::size_t kind = 0; kind < kPixelKindCount; ++kind) {
-    const FacingArea& area = shape.area[kind];
-    const double facing_m2 = std::min(area.total_m2, area.facing_m2 + chord * area.total_m2);
-    features[kPixelTerm[kind]] = std::min(facing_m2 * pixels_per_m2, kMaxScreensPerObject * screen_pixels_);
+Features FeatureTable::bound(std::uint32_t object, const Box& eyes) const {
+  if (eyes.empty()) throw Failure(ErrorWord::kInternal, "features of object " + std::to_string(object) + ": no eyes");
+  const Object& drawn = scene_->objects[object];
+  const ProjectionFromBox projection(camera_, eyes);
+  const MeshFromBox mesh(drawn.world_from_object, projection);
+  const bool maybe_near = distance(eyes, drawn.bounds) < shapes_[object].radius_m;
+  Features features = shapes_[object].counts;
+  for (std::uint32_t p = drawn.first_part; p < drawn.first_part + drawn.part_count; ++p) {
+    const Part& part = scene_->parts[p];
+    const SurfaceSamples& samples = samples_[part.mesh];
+    const bool double_sided = scene_->materials[part.material].double_sided;
+    const double far_pixels = mesh.most_pixels(samples.patches, double_sided);
+    const double near_pixels = maybe_near ? mesh.most_pixels(samples.near_patches, double_sided) : 0.0;
+    features[kPixelTerm[static_cast<std::size_t>(pixel_kind(*scene_, part))]] += std::max(far_pixels, near_pixels);
+    features[Term::kCoveringTriangles] += mesh.most_covering_triangles(samples, double_sided);
   }
+  for (const Term term : kPixelTerm) features[term] = std::min(features[term], kMaxScreensPerObject * screen_pixels_);
   features[Term::kOnScreenTriangles] = features[Term::kTriangles];
-  features[Term::kCoveringTriangles] = std::min(covering_triangles(shape, pixels_per_m2), features[Term::kTriangles]);
+  features[Term::kCoveringTriangles] = std::min(features[Term::kCoveringTriangles], features[Term::kTriangles]);
   return features;
 }
 

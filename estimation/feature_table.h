@@ -1,9 +1,8 @@
 // The features of a whole scene's objects, prepared once and asked often (thesis 5.2.1; features.h says what the terms mean).
 //
-// A single view's estimate sums f^2 |a.p| / z^3 over surface samples (projection.h). A region's bound replaces each factor by its largest
-// value at `nearest_m`: |a.p| / z^3 <= |a| / (r^2 cos^3) with the corner's cosine, and the share of area that can face one direction by the
-// root of the largest eigenvalue of the normals' second moments (Jensen: mean |n.w| <= sqrt(mean (n.w)^2)) plus the spread of directions
-// over the object. So bound >= estimate holds term by term, by construction.
+// A single view's estimate sums f^2 |a.p| / z^3 over surface samples (projection.h). A bound for all views from a box sums the greatest
+// value of each of these terms over the box, sample by sample: every part of a large object counts at its own distance, and what faces
+// away from the whole box not at all. So bound >= estimate holds term by term, and a smaller box never has a larger bound.
 #pragma once
 
 #include <span>
@@ -31,44 +30,26 @@ class FeatureTable {
 
   /// Estimate for one view; all zero when the object's bounds miss the frustum. About a microsecond a part, 15 for a part within reach.
   [[nodiscard]] Features estimate(std::uint32_t object, const PreparedView& view) const;
-  /// Upper bound over all views at least `nearest_m` from the object's bounds; well below a microsecond.
-  [[nodiscard]] Features bound(std::uint32_t object, double nearest_m) const;
+  /// Upper bound over all views from `eyes`, in any direction. About a microsecond a part.
+  [[nodiscard]] Features bound(std::uint32_t object, const Box& eyes) const;
   /// A whole frame: frame_features() and the estimates of `objects`.
   [[nodiscard]] Features frame(std::span<const std::uint32_t> objects, const View& view) const;
 
   [[nodiscard]] const Camera& camera() const { return camera_; }
 
  private:
-  /// What a bound needs of an object's surface of one pixel kind, world space.
-  struct FacingArea {
-    double total_m2 = 0.0;
-    double facing_m2 = 0.0;  // the most that one direction can see, all of it seen from far away
-  };
   struct ObjectShape {
-    Features counts;  // draws, switches, triangles: the same for every view
-    std::array<FacingArea, kPixelKindCount> area;
-    double radius_m = 0.0;                              // of the bounds' sphere
-    double half_extent_m = 0.0;                         // least half edge of the bounds: the centre is that much farther than the bounds
-    std::size_t first_covering = 0, last_covering = 0;  // range in covering_
-  };
-  /// Sampled triangles in ascending area with running sums, so that sum min(1, q area) is one binary search.
-  struct CoveringStep {
-    double area_m2 = 0.0;
-    double area_before_m2 = 0.0;  // of smaller ones, times the triangles they stand for
-    double triangles_from = 0.0;  // this one and larger ones
+    Features counts;        // draws, switches, triangles: the same for every view
+    double radius_m = 0.0;  // of the bounds' sphere; an eye nearer than that needs the near patches
   };
 
-  [[nodiscard]] ObjectShape shape_of(const Object& object);
-  void add_covering(ObjectShape& shape, std::vector<std::array<double, 2>> areas_and_counts);
-  [[nodiscard]] double covering_triangles(const ObjectShape& shape, double pixels_per_m2) const;
+  [[nodiscard]] ObjectShape shape_of(const Object& object) const;
 
   const Scene* scene_;
   Camera camera_;
   double screen_pixels_;
-  double pixels_per_m2_at_1m_;           // at most
   std::vector<SurfaceSamples> samples_;  // per mesh
   std::vector<ObjectShape> shapes_;      // per object
-  std::vector<CoveringStep> covering_;
 };
 
 }  // namespace standin

@@ -44,9 +44,9 @@ Features object_features(const Scene& scene, std::uint32_t object, const View& v
   return FeatureTable(one, camera).estimate(0, PreparedView(view, camera));
 }
 
-Features object_features_bound(const Scene& scene, std::uint32_t object, double nearest_m, const Camera& camera) {
+Features object_features_bound(const Scene& scene, std::uint32_t object, const Box& eyes, const Camera& camera) {
   const Scene one = only(scene, object);
-  return FeatureTable(one, camera).bound(0, nearest_m);
+  return FeatureTable(one, camera).bound(0, eyes);
 }
 
 }  // namespace standin

@@ -1,7 +1,7 @@
 // Features of a frame that are known without rendering it (thesis 5.2.1, 5.8.1): what the time model multiplies.
 //
 // Features are additive over what is drawn. For a single view they are estimates; for a region they are upper bounds over all its views
-// that come no nearer than `nearest_m` to the object's bounds, and monotone: falling in `nearest_m`. Pixel terms are counted before the
+// from a box of eyes, and monotone: never less for a larger box. Pixel terms are counted before the
 // depth test; the model caps the sum of the originals' (time_model.h). Asked for more than once, take a FeatureTable (feature_table.h).
 #pragma once
 
@@ -45,8 +45,8 @@ struct Features {
 
 /// Estimate for one view; all zero when the object's bounds miss the frustum.
 [[nodiscard]] Features object_features(const Scene& scene, std::uint32_t object, const View& view, const Camera& camera);
-/// Upper bound over all views whose position is at least `nearest_m` >= 0 from the object's bounds.
-[[nodiscard]] Features object_features_bound(const Scene& scene, std::uint32_t object, double nearest_m, const Camera& camera);
+/// Upper bound over all views from `eyes` (not empty), in any direction.
+[[nodiscard]] Features object_features_bound(const Scene& scene, std::uint32_t object, const Box& eyes, const Camera& camera);
 
 /// What is known of an impostor's drawing cost: of a baked one, or of a candidate's estimate.
 struct ImpostorCost {

@@ -39,6 +39,41 @@ struct Projection {
   }
 };
 
+/// The same for all eyes in a box and all directions of view: an upper bound, and never less for a larger box.
+///
+/// With w from the patch to the eye, r = |w| >= its least value over the box, |a.w| at most the support of the box and at most |a| r, and
+/// z >= r cos of the image's half diagonal for whatever is seen.
+class ProjectionFromBox {
+ public:
+  ProjectionFromBox(const Camera& camera, const Box& eyes)
+      : eyes_(eyes),
+        centre_(eyes.centre()),
+        half_size_(0.5 * eyes.size()),
+        focal_px_(camera.focal_px()),
+        cosine_(std::cos(camera.half_diagonal_rad())),
+        near_m_(camera.near_m) {}
+
+  [[nodiscard]] double most_pixels(const Vec3& point, const Vec3& vector_area_m2, bool double_sided) const {
+    const double from_centre = glm::dot(vector_area_m2, centre_ - point);
+    const double towards = (double_sided ? std::abs(from_centre) : from_centre) + glm::dot(glm::abs(vector_area_m2), half_size_);
+    if (!(towards > 0.0)) return 0.0;
+    const double area_m2 = glm::length(vector_area_m2);
+    const double nearest_m = std::max(distance(point, eyes_), near_m_);
+    const double least_depth_m = cosine_ * nearest_m;
+    const double softening_m2 = area_m2 / 3.14159265358979323846;
+    // An estimate adds the same terms in another order and from transformed points.
+    constexpr double kRounding = 1.0 + 1e-9;
+    return kRounding * focal_px_ * focal_px_ * std::min(towards, area_m2 * nearest_m) /
+           (least_depth_m * (least_depth_m * least_depth_m + softening_m2));
+  }
+
+ private:
+  Box eyes_;
+  Vec3 centre_;
+  Vec3 half_size_;
+  double focal_px_, cosine_, near_m_;
+};
+
 /// The most pixels that a patch of 1 m^2 at 1 m covers anywhere in the image, facing the eye: f^2 / cos^3 of the half diagonal.
 [[nodiscard]] inline double greatest_pixels_per_m2_at_1m(const Camera& camera) {
   return camera.focal_px() * camera.focal_px() * std::pow(std::cos(camera.half_diagonal_rad()), -3.0);

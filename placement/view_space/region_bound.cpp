@@ -54,7 +54,7 @@ CellCosts RegionEstimator::cell_costs(std::vector<Box> chain, std::span<const st
   for (const std::uint32_t object : visible) {
     const Box& bounds = scene_->objects[object].bounds;
     if (bounds.empty()) continue;
-    const Cost cost = model_->cost(features_.bound(object, distance(cell.chain.front(), bounds)));
+    const Cost cost = model_->cost(features_.bound(object, cell.chain.front()));
     if (cost.fixed_ms > 0.0 || cost.pixel_ms > 0.0) cell.objects.push_back({object, bounds, cost});
   }
   std::sort(cell.objects.begin(), cell.objects.end(),

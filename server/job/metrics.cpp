@@ -95,7 +95,7 @@ json causes_json(const World& world, const Subdivision& subdivision, const TimeM
     const Cpv& cpv = subdivision.cpvs[p];
     const Box& box = subdivision.cells[cpv.cell].box;
     for (const auto& term : subdivision.terms_of(cpv)) {
-      shares.add(table.bound(term.object, distance(box, world.scene.objects[term.object].bounds)), model, cpv.pixels_capped);
+      shares.add(table.bound(term.object, box), model, cpv.pixels_capped);
       by_object[term.object] += term.predicted_ms;
     }
     if (cpv.pixels_capped) shares.pixels_ms += model.pixel_cap_ms;

@@ -201,7 +201,24 @@ Scene random_scene(Rng& rng) {
   return scene;
 }
 
-TEST(Bound, IsNeverBelowAnEstimateAtOrBeyondItsDistance) {
+// A random box that holds the eye: half of the time the eye itself, or flat.
+Box box_around(const Vec3& eye, Rng& rng) {
+  const auto reach = [&] {
+    return Vec3(rng.uniform(), rng.below(2) * rng.uniform(), rng.uniform()) * std::pow(10.0, rng.uniform(-2.0, 1.5));
+  };
+  return rng.below(4) == 0 ? Box{eye, eye} : Box{eye - reach(), eye + reach()};
+}
+
+Box larger(const Box& box, Rng& rng) {
+  return {box.min - 5.0 * Vec3(rng.uniform(), rng.uniform(), rng.uniform()), box.max + 5.0 * Vec3(rng.uniform())};
+}
+
+// Eyes at one point, `distance_m` along +z.
+Box eye_at(double distance_m) {
+  return {Vec3(0, 0, distance_m), Vec3(0, 0, distance_m)};
+}
+
+TEST(Bound, IsNeverBelowAnEstimateFromItsBox) {
   int seen = 0;
   for (std::uint64_t seed = 0; seed < 60; ++seed) {
     Rng rng(seed, 7);
@@ -217,13 +234,14 @@ TEST(Bound, IsNeverBelowAnEstimateAtOrBeyondItsDistance) {
       const Vec3 towards = bounds.centre() - eye + 0.5 * glm::length(bounds.centre() - eye) * rng.uniform() * random_unit(rng);
       const View view{eye, glm::normalize(towards)};
       const Features estimate = table.estimate(object, PreparedView(view, camera));
-      const Features at_distance = table.bound(object, distance(eye, bounds));
-      const Features nearer = table.bound(object, rng.uniform() * distance(eye, bounds));
+      const Box eyes = box_around(eye, rng);
+      const Features from_box = table.bound(object, eyes);
+      const Features from_larger = table.bound(object, larger(eyes, rng));
       seen += estimate[Term::kDraws] > 0.0 ? 1 : 0;
       for (std::size_t t = 0; t < kTermCount; ++t) {
-        ASSERT_LE(estimate.value[t], at_distance.value[t]) << term_name(static_cast<Term>(t)) << ", seed " << seed << ", view " << i;
-        ASSERT_LE(at_distance.value[t], nearer.value[t]) << term_name(static_cast<Term>(t)) << ", seed " << seed << ", view " << i;
-        ASSERT_TRUE(std::isfinite(nearer.value[t]));
+        ASSERT_LE(estimate.value[t], from_box.value[t]) << term_name(static_cast<Term>(t)) << ", seed " << seed << ", view " << i;
+        ASSERT_LE(from_box.value[t], from_larger.value[t]) << term_name(static_cast<Term>(t)) << ", seed " << seed << ", view " << i;
+        ASSERT_TRUE(std::isfinite(from_larger.value[t]));
       }
     }
   }
@@ -235,7 +253,7 @@ TEST(Bound, OfAFarFacingSquareIsItsImageAtTheCorner) {
   add_object(scene, grid_mesh(0.01F, 4), Mat4(1.0), false);
   const double magnification = std::pow(std::cos(kCamera.half_diagonal_rad()), -3.0);
   const double expected = magnification * std::pow(kCamera.focal_px() * 0.02 / 10.0, 2);
-  EXPECT_NEAR(object_features_bound(scene, 0, 10.0, kCamera)[Term::kPlainPixels], expected, 0.01 * expected);
+  EXPECT_NEAR(object_features_bound(scene, 0, eye_at(10.0), kCamera)[Term::kPlainPixels], expected, 0.01 * expected);
 }
 
 TEST(Bound, OfAClosedCulledSurfaceCountsHalf) {
@@ -247,16 +265,36 @@ TEST(Bound, OfAClosedCulledSurfaceCountsHalf) {
   for (const std::uint32_t index : back.indices) mesh.indices.push_back(index);
   add_object(scene, mesh, Mat4(1.0), false, AlphaMode::kOpaque, false);
   add_object(scene, mesh, Mat4(1.0), false, AlphaMode::kOpaque, true);
-  const double culled = object_features_bound(scene, 0, 10.0, kCamera)[Term::kPlainPixels];
-  const double double_sided = object_features_bound(scene, 1, 10.0, kCamera)[Term::kPlainPixels];
+  const double culled = object_features_bound(scene, 0, eye_at(10.0), kCamera)[Term::kPlainPixels];
+  const double double_sided = object_features_bound(scene, 1, eye_at(10.0), kCamera)[Term::kPlainPixels];
   EXPECT_NEAR(culled / double_sided, 0.5, 0.01);
 }
 
-TEST(Bound, RefusesANegativeDistance) {
+// A ground of 100 x 100 m, the eye 1.7 m above its middle: the far parts count at their own distance and slope, not at 1.7 m and face on.
+TEST(Bound, OfALargeObjectCountsEachPartAtItsOwnDistance) {
+  Scene scene;
+  add_object(scene, grid_mesh(50.0F, 40), Mat4(1.0), false);
+  const Features bound = object_features_bound(scene, 0, eye_at(1.7), kCamera);
+  const double screens = bound[Term::kPlainPixels] / (512.0 * 512.0);
+  EXPECT_LT(bound[Term::kCoveringTriangles], bound[Term::kTriangles] + 1e-9);
+  // The half space below is 2 pi sr; the image of 1 sr has f^2 pixels at least and f^2 / cos^3 at most.
+  const double focal2 = std::pow(kCamera.focal_px(), 2) / (512.0 * 512.0);
+  EXPECT_LT(screens, 1.1 * 2.0 * std::numbers::pi * focal2 * std::pow(std::cos(kCamera.half_diagonal_rad()), -3.0));
+  EXPECT_GT(screens, 1.0);
+}
+
+TEST(Bound, OfWhatFacesAwayFromTheWholeBoxIsNothing) {
+  Scene scene;
+  add_object(scene, grid_mesh(1.0F, 4), Mat4(1.0), false, AlphaMode::kOpaque, false);  // faces +z
+  EXPECT_EQ(object_features_bound(scene, 0, {Vec3(-5, -5, -9), Vec3(5, 5, -4)}, kCamera)[Term::kPlainPixels], 0.0);
+  EXPECT_EQ(object_features_bound(scene, 0, {Vec3(-5, -5, -9), Vec3(5, 5, -4)}, kCamera)[Term::kCoveringTriangles], 0.0);
+  EXPECT_GT(object_features_bound(scene, 0, {Vec3(-5, -5, -9), Vec3(5, 5, 0.1)}, kCamera)[Term::kPlainPixels], 0.0);
+}
+
+TEST(Bound, RefusesNoEyes) {
   Scene scene;
   add_object(scene, grid_mesh(1.0F, 1), Mat4(1.0), false);
-  EXPECT_THROW((void)object_features_bound(scene, 0, -1.0, kCamera), Failure);
-  EXPECT_THROW((void)object_features_bound(scene, 0, std::nan(""), kCamera), Failure);
+  EXPECT_THROW((void)object_features_bound(scene, 0, Box{}, kCamera), Failure);
 }
 
 TEST(FeatureTable, AFrameIsTheSumOfItsObjects) {
