@@ -16,11 +16,12 @@ struct TimedFrame {
   Features features;  // estimate for its view; pixel terms before capping
   double milliseconds = 0.0;
   std::uint32_t group = 0;
+  double spread = 0.0;  // of the repeats (FrameSample::spread)
 };
 
 /// Repeats a sample that the caller's timer is asked for: fewer than a verification's, since many rough samples teach a fit more than few
 /// exact ones.
-inline constexpr int kCalibrationRepeats = 5;
+inline constexpr int kCalibrationRepeats = 3;
 
 struct CalibrationOptions {
   double seconds = 45.0;  // of timed renders, in each call of sample_frames (baking and set-up not counted)

@@ -1,6 +1,7 @@
 // Which frames calibration times (thesis 5.8.1, Fig. 5.5 and 5.6): clusters of the object hierarchy from random viewpoints, whole frames
-// from inside and around the scene with all or some objects, baked impostors from inside their view cells, alone and among the originals of
-// all other objects, and now and then an empty frame. The sequence depends on the seed alone; how far it gets, on the frames' times.
+// from inside and around the scene with all, some or the surrounding objects, baked impostors from inside their view cells, alone and among
+// the originals of all other objects, and now and then an empty frame. The sequence depends on the seed alone; how far it gets, on the
+// frames' times.
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -69,10 +70,11 @@ class FrameSampler {
     if (frame % 40 == 0) return {street_view(), {}};
     switch (frame % 8) {
       case 0:
-      case 3:
         return whole();
-      case 2:
+      case 3:
       case 6:
+        return surroundings();
+      case 2:
         return some_objects();
       case 5:
         return impostors_.impostors.empty() ? cluster() : impostor(false);
@@ -151,6 +153,15 @@ class FrameSampler {
     return setup;
   }
 
+  /// What is left of a street view where visible sets hide the far end: all objects within some distance.
+  [[nodiscard]] Setup surroundings() {
+    Setup setup{street_view(), {}};
+    const double reach_m = scene_.bounds.diagonal() * log_uniform(rng_, 0.05, 0.7);
+    for (const std::uint32_t id : all_objects_)
+      if (distance(setup.view.position, scene_.objects[id].bounds) <= reach_m) setup.list.objects.push_back(id);
+    return setup;
+  }
+
   [[nodiscard]] Setup impostor(bool among_originals) {
     const auto id = static_cast<std::uint32_t>(rng_.below(impostors_.impostors.size()));
     const Impostor& drawn = impostors_.impostors[id];
@@ -218,7 +229,7 @@ std::vector<TimedFrame> sample_frames(const Scene& scene, std::uint32_t group, C
     const Setup setup = sampler.setup(frames.size());
     const FrameSample sample = timer.time(renderer, setup.view, setup.list);
     spent_ms += (kCalibrationRepeats + 1) * sample.raw_milliseconds + kCalibrationRepeats * timer.reference_ms();
-    frames.push_back({sampler.features(setup), sample.milliseconds, group});
+    frames.push_back({sampler.features(setup), sample.milliseconds, group, sample.spread});
   }
   return frames;
 }

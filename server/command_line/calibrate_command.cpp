@@ -15,13 +15,14 @@ namespace {
 
 using nlohmann::json;
 
-// The built-in training set: two cities that differ in seed and in triangles per object.
+// The built-in training set: cities that differ in seed, size and triangles per object.
 std::vector<Scene> training_scenes(const CommandContext& context) {
   std::vector<Scene> scenes;
   for (const auto& file : context.arguments.scenes) scenes.push_back(load_scene(file, load_options(context.spec)));
   if (!scenes.empty()) return scenes;
   scenes.push_back(make_city({300, 500'000, 101}));
   scenes.push_back(make_city({900, 700'000, 102}));
+  scenes.push_back(make_city({1500, 2'950'000, 103}));
   return scenes;
 }
 
