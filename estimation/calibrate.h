@@ -16,7 +16,6 @@ struct TimedFrame {
   Features features;  // estimate for its view; pixel terms before capping
   double milliseconds = 0.0;
   std::uint32_t group = 0;
-  double spread = 0.0;  // of the repeats (FrameSample::spread)
 };
 
 /// Repeats a sample that the caller's timer is asked for: fewer than a verification's, since many rough samples teach a fit more than few

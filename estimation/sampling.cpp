@@ -229,7 +229,7 @@ std::vector<TimedFrame> sample_frames(const Scene& scene, std::uint32_t group, C
     const Setup setup = sampler.setup(frames.size());
     const FrameSample sample = timer.time(renderer, setup.view, setup.list);
     spent_ms += (kCalibrationRepeats + 1) * sample.raw_milliseconds + kCalibrationRepeats * timer.reference_ms();
-    frames.push_back({sampler.features(setup), sample.milliseconds, group, sample.spread});
+    frames.push_back({sampler.features(setup), sample.milliseconds, group});
   }
   return frames;
 }

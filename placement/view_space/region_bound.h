@@ -2,7 +2,7 @@
 //
 // Every enclosing region of a region's views is valid, so an object counts only where all of these may see it: the boxes of the cell and of
 // its ancestors up to the leaf level of the view space, each paired with the cones of the interval and of all its ancestors up to the whole
-// face. Its cost bound is the one at the nearest distance of the cell's own box (the least over the chain: it falls with distance). Child
+// face. Its cost bound is that of the cell's own box (the least over the chain: a smaller box never has a larger one). Child
 // regions are therefore never bounded above their parents, object by object.
 //
 // Pixel work saturates, so a region has two linear bounds: all terms with their pixels, or the pixel cap and terms without. The smaller is
