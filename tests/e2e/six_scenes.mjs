@@ -130,7 +130,7 @@ export function sixScenes(folder, detail = 24) {
   writeScene(file("far.glb"), { sphere: fine }, Array.from({ length: 12 }, (_, i) => ["sphere", [8 * i - 44, 1.7, -90 - (i % 3)]]), true);
   const job = (name, scene, config, stage, says, more = {}) => ({ name, scene: file(scene), config, stage, says, flags: [], ...more });
   return [
-    job("a single object", "single.glb", tower, "visibility", /single object/, { flags: ["--split-extent", "0"] }),
+    job("a single object", "single.glb", tower, "visibility", /single object/, { flags: ["--split-extent", "0", "--split-triangles", "0"] }),
     job("no problem view", "field.glb", slab, "candidates", /no problem views/, { inBudget: true }),
     job("an open field without occlusion", "field.glb", slab, "visibility", /no occlusion to gain/),
     job("untextured", "untextured.glb", slab, "bake", /textures: no material/),

@@ -220,5 +220,27 @@ TEST(Bake, RefusesWhatCannotBe) {
             ErrorWord::kCancelled);
 }
 
+// A wall (one layer) and a deep, half untextured cluster: doing what could be left out changes no byte.
+TEST(Bake, LeavesOutOnlyWhatCannotBeSeen) {
+  for (const double depth : {0.0, 8.0}) {
+    SmallScene scene;
+    scene.scene.textures.push_back({"dark", 1, 1, {90, 60, 30, 255}});
+    Material textured = SmallScene::white(), lit;
+    textured.texture = 0;
+    lit.base_colour = glm::vec4(0.5F, 0.7F, 0.3F, 1.0F);
+    scene.add_object(rectangle({-1, -1, -depth}, {1, 0, 0.4 * depth}, {0, 2, 0}), textured, test::rectangle_uvs());
+    scene.add_object(rectangle({0, -1, 0}, {1, 0, -depth}, {0, 2, 0}), lit);
+    scene.add_object(rectangle({-0.5, -0.5, -depth}, {1, 0, 0}, {0, 1, 0}), SmallScene::white());
+    const BakeRequest request{{0, 1, 2}, shaft_towards_z(0.2, 10.0)};
+    BakeQuality quality;
+    const Impostor normal = bake_layered(scene.scene, request, {}, quality);
+    quality.leave_out = false;
+    const Impostor forced = bake_layered(scene.scene, request, {}, quality);
+    EXPECT_EQ(normal.layers.size() == 1, depth == 0.0);
+    EXPECT_EQ(normal.texels, forced.texels);
+    EXPECT_EQ(normal.quads.size(), forced.quads.size());
+  }
+}
+
 }  // namespace
 }  // namespace standin
