@@ -4,10 +4,13 @@
 // forbids every request. All it shows comes from metrics.json, the parts of placement.json that summarise the job, and pictures; a section
 // without numbers does not appear. Beyond the fields that architecture.md lists it reads, where present:
 //
-//   heat_map        [{x0, z0, x1, z1, before_ms, after_ms}]: cells in plan view, highest bound of any direction; metres; after_ms may be
-//   null verify.frames   [{before_ms, after_ms, estimated_before_ms, estimated_after_ms}]: measured ones may be null causes [{name, ms,
-//   regions}]: objects that make regions slow (survey) unsolved        [{cpv, region, bound_before_ms, lowest_budget_ms, residual_ms,
-//   blocking: [{object, name, ms}]}] left_out        [sentence, or {stage, reason}] scene.name      used when there is no placement
+//   heat_map: [{x0, z0, x1, z1, before_ms, after_ms}], cells in plan view, highest bound of any direction; metres; after_ms may be null.
+//   verify.frames: [{before_ms, after_ms, estimated_before_ms, estimated_after_ms}]; measured ones may be null.
+//   causes: {draws_share, triangles_share, pixels_share, objects: [{object, name, ms}]}, what makes regions slow.
+//   unsolved: the worst, [{cpv, region, bound_before_ms, lowest_budget_ms, residual_ms, blocking: [{object, name, ms}]}].
+//   unsolved_by_object: all of them, [{object, name, regions, worst_ms}].
+//   left_out: [sentence, or {stage, reason}].
+//   scene.name: used when there is no placement.
 #pragma once
 
 #include <nlohmann/json.hpp>
