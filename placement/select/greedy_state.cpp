@@ -5,7 +5,12 @@
 namespace standin {
 
 GreedyState::GreedyState(const SelectionProblem& problem, const TreeOrder& order, const std::vector<bool>& ignored)
-    : problem_(problem), order_(order), residual_(problem.deficit), met_(problem.cpv_count()), cpvs_(problem.cpv_count()) {
+    : problem_(problem),
+      order_(order),
+      residual_(problem.deficit),
+      met_(problem.cpv_count()),
+      touched_(problem.cpv_count()),
+      cpvs_(problem.cpv_count()) {
   const std::uint32_t stages = problem.stages;
   for (std::uint32_t p = 0; p < problem.cpv_count(); ++p) {
     if (!ignored.empty() && ignored[p]) std::fill_n(residual_.begin() + static_cast<std::ptrdiff_t>(p) * stages, stages, 0.0);
@@ -41,7 +46,7 @@ double GreedyState::term(const Serving& serving) const {
   const std::uint32_t p = problem_.cpv[serving.entry];
   if (met_[p]) return 0.0;
   const Cpv& state = cpvs_[p];
-  const Range range = inside(state, problem_.node[serving.candidate]);
+  const Range range = touched_[p] ? inside(state, problem_.node[serving.candidate]) : Range{};
   if (range.ancestor_in_use) return 0.0;
   double sum = 0.0;
   for (std::uint32_t k = 0; k < problem_.stages; ++k) {
@@ -68,6 +73,7 @@ void GreedyState::use(const Serving& serving) {
   const std::uint32_t p = problem_.cpv[serving.entry];
   const std::uint32_t node = problem_.node[serving.candidate];
   Cpv& state = cpvs_[p];
+  touched_[p] = true;
 
   const Range range = inside(state, node);
   std::vector<double> nets(problem_.stages);

@@ -59,6 +59,7 @@ class GreedyState {
   const TreeOrder& order_;
   std::vector<double> residual_;  // P * K
   std::vector<bool> met_;
+  std::vector<bool> touched_;  // something is in use: most scores are taken before, and need not look
   std::vector<Cpv> cpvs_;
   std::uint32_t unmet_ = 0;
 };

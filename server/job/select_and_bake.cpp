@@ -191,7 +191,7 @@ class Rounds {
     result_.selection = select_impostors(problem_, config, result_.selection.chosen, budget_);
   }
 
-  // True when what is selected is baked, and holds.
+  // True when what is selected is baked, and holds, and there is nothing left to try.
   bool bake() {
     const std::vector<std::uint32_t>& chosen = result_.selection.chosen;
     BakeRound outcome;
@@ -203,15 +203,20 @@ class Rounds {
     result_.rounds.push_back(outcome);
     const bool settled = outcome.short_cpvs == 0 && pages <= result_.atlas_pages;
     result_.atlas_pages = std::max(pages, result_.atlas_pages);
-    update(compare(candidates_.candidates, baker_.sizes()));
-    return chosen.empty() || (settled && outcome.baked == 0);
+    bool done = chosen.empty() || (settled && outcome.baked == 0);
+    if (done && cautious_ && !result_.selection.summary.unmet.empty()) {
+      cautious_ = false;
+      done = false;
+    }
+    update(cautious_ ? compare(candidates_.candidates, baker_.sizes()) : without_caution());
+    return done;
   }
 
   SelectedImpostors finish(int bound_iterations) {
     SelectionSummary& summary = result_.selection.summary;
     summary.bytes = baker_.bytes(result_.selection.chosen);
     if (bound_iterations > 0) {
-      update({1.0, 1.0 / sizes_.quads_margin, 1.0 / sizes_.bytes_margin});  // a bound takes estimates without their caution
+      update(without_caution());
       summary.lower_bound_bytes = memory_lower_bound(problem_, summary.bytes, bound_iterations, budget_);
     }
     collect(result_, baker_);
@@ -220,6 +225,8 @@ class Rounds {
 
  private:
   [[nodiscard]] SelectionBudget limits() const { return {model_.predicted_budget_ms(budget_ms_), result_.page_switch_ms}; }
+
+  [[nodiscard]] Correction without_caution() const { return {1.0, 1.0 / sizes_.quads_margin, 1.0 / sizes_.bytes_margin}; }
 
   // The same problem with what is baked as it is, and the rest as estimated with a correction.
   void update(const Correction& correction) {
@@ -243,6 +250,9 @@ class Rounds {
   const WorkBudget& budget_;
   Baker baker_;
   SelectionProblem problem_;
+  // Costs of what is not baked are estimated with caution, so that few bakes leave a region short. Once all else is settled, regions that
+  // nothing solves by such costs are tried without.
+  bool cautious_ = true;
   SelectedImpostors result_;
 };
 
