@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "render/base/parallel.h"
+
 namespace standin {
 namespace {
 
@@ -15,19 +17,34 @@ bool worse(const Scored& a, const Scored& b) {
   return a.score != b.score ? a.score < b.score : a.candidate > b.candidate;
 }
 
+constexpr std::size_t kChunk = 4096;  // candidates a task
+
+/// All scores before the first pick; 0 for those with `taken`. Most of the greedy's work.
+std::vector<double> first_scores(const GreedyState& state, const std::vector<bool>& taken, int threads, const WorkBudget& budget) {
+  std::vector<double> scores(taken.size(), 0.0);
+  parallel_for((taken.size() + kChunk - 1) / kChunk, threads, budget, [&](std::size_t chunk) {
+    const std::size_t end = std::min(taken.size(), (chunk + 1) * kChunk);
+    for (std::size_t c = chunk * kChunk; c < end; ++c)
+      if (!taken[c]) scores[c] = state.score(static_cast<std::uint32_t>(c));
+  });
+  return scores;
+}
+
 }  // namespace
 
-GreedyPicks pick_lazily(GreedyState& state, const std::vector<bool>& taken, const WorkBudget& budget) {
+GreedyPicks pick_lazily(GreedyState& state, const std::vector<bool>& taken, int threads, const WorkBudget& budget) {
   GreedyPicks picks;
+  if (state.all_met()) return picks;
+  picks.evaluations = static_cast<std::uint64_t>(std::ranges::count(taken, false));
   std::vector<Scored> heap;
+  const auto scores = first_scores(state, taken, threads, budget);
+  for (std::uint32_t c = 0; c < scores.size(); ++c)
+    if (scores[c] > 0.0) heap.push_back({scores[c], c});
+  std::make_heap(heap.begin(), heap.end(), worse);
   const auto score = [&](std::uint32_t candidate) {
     if (++picks.evaluations % 4096 == 0) budget.check();
     return state.score(candidate);
   };
-  for (std::uint32_t c = 0; c < taken.size(); ++c)
-    if (!taken[c])
-      if (const double fresh = score(c); fresh > 0.0) heap.push_back({fresh, c});
-  std::make_heap(heap.begin(), heap.end(), worse);
 
   while (!state.all_met() && !heap.empty()) {
     std::pop_heap(heap.begin(), heap.end(), worse);

@@ -18,7 +18,7 @@ struct GreedyPicks {
 };
 
 /// Picks until every CPV is met or no score is positive (a stall; stall_repair.h). Candidates with `taken` are left alone.
-[[nodiscard]] GreedyPicks pick_lazily(GreedyState& state, const std::vector<bool>& taken, const WorkBudget& budget);
+[[nodiscard]] GreedyPicks pick_lazily(GreedyState& state, const std::vector<bool>& taken, int threads, const WorkBudget& budget);
 /// The oracle: scores every candidate before every pick.
 [[nodiscard]] GreedyPicks pick_plainly(GreedyState& state, const std::vector<bool>& taken, const WorkBudget& budget);
 

@@ -35,9 +35,9 @@ class Selector {
     return std::move(result_);
   }
 
-  double lower_bound(double known_bytes, int iterations) {
+  double lower_bound(double known_bytes) {
     set_aside();
-    return lagrangian_bound(problem_, columns_, ignored_, known_bytes, iterations, budget_);
+    return lagrangian_bound(problem_, columns_, ignored_, known_bytes, config_.bound_iterations, config_.threads, budget_);
   }
 
  private:
@@ -62,7 +62,7 @@ class Selector {
     for (std::uint32_t p = 0; p < problem_.cpv_count(); ++p)
       if (!ignored_[p]) state.represent(cover_.best(p).members);
 
-    const GreedyPicks picks = config_.lazy ? pick_lazily(state, taken, budget_) : pick_plainly(state, taken, budget_);
+    const GreedyPicks picks = config_.lazy ? pick_lazily(state, taken, config_.threads, budget_) : pick_plainly(state, taken, budget_);
     for (const std::uint32_t candidate : picks.order) cover_.add(candidate);
     result_.summary.picked_by_greedy = static_cast<std::uint32_t>(picks.order.size());
     result_.summary.evaluations = picks.evaluations;
@@ -97,7 +97,8 @@ class Selector {
     SelectionSummary& summary = result_.summary;
     summary.bytes = bytes();
     if (config_.bound_iterations > 0)
-      summary.lower_bound_bytes = lagrangian_bound(problem_, columns_, ignored_, summary.bytes, config_.bound_iterations, budget_);
+      summary.lower_bound_bytes =
+          lagrangian_bound(problem_, columns_, ignored_, summary.bytes, config_.bound_iterations, config_.threads, budget_);
     summary.stop = summary.unmet.empty() ? SelectionSummary::Stop::kAllMet : SelectionSummary::Stop::kSomeUnreachable;
     summary.message = summary.unmet.empty() ? "every region is within budget"
                                             : std::to_string(summary.unmet.size()) + " of " + std::to_string(problem_.cpv_count()) +
@@ -148,9 +149,9 @@ Selection select_impostors(const SelectionProblem& problem, const SelectionConfi
   return Selector(problem, config, budget).run(initial);
 }
 
-double memory_lower_bound(const SelectionProblem& problem, double known_bytes, int iterations, const WorkBudget& budget) {
+double memory_lower_bound(const SelectionProblem& problem, double known_bytes, const SelectionConfig& config, const WorkBudget& budget) {
   validate(problem);
-  return Selector(problem, SelectionConfig{}, budget).lower_bound(known_bytes, iterations);
+  return Selector(problem, config, budget).lower_bound(known_bytes);
 }
 
 }  // namespace standin

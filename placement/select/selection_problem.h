@@ -105,6 +105,7 @@ struct SelectionConfig {
   bool lazy = true;            // false: plain greedy, the oracle
   int exchange_rounds = 0;     // 0: reverse-delete only; each round tries to add one and delete others
   int bound_iterations = 100;  // subgradient steps; 0: no lower bound
+  int threads = 1;             // the same result for any number
 };
 
 /// `initial`: candidates that are already in S (a repair after baking); greedy goes on from there. Deterministic: ties by score, then lower
@@ -112,8 +113,9 @@ struct SelectionConfig {
 [[nodiscard]] Selection select_impostors(const SelectionProblem& problem, const SelectionConfig& config,
                                          std::span<const std::uint32_t> initial, const WorkBudget& budget);
 
-/// Lower bound on the bytes of any selection that meets every reachable CPV (math.md 5.5), from `iterations` subgradient steps.
-/// `known_bytes`: of a known selection.
-[[nodiscard]] double memory_lower_bound(const SelectionProblem& problem, double known_bytes, int iterations, const WorkBudget& budget);
+/// Lower bound on the bytes of any selection that meets every reachable CPV (math.md 5.5), from `config.bound_iterations` subgradient
+/// steps. `known_bytes`: of a known selection.
+[[nodiscard]] double memory_lower_bound(const SelectionProblem& problem, double known_bytes, const SelectionConfig& config,
+                                        const WorkBudget& budget);
 
 }  // namespace standin

@@ -188,6 +188,7 @@ class Rounds {
     SelectionConfig config;
     config.exchange_rounds = spec.exchange_rounds;
     config.bound_iterations = 0;
+    config.threads = world_.threads;
     result_.selection = select_impostors(problem_, config, result_.selection.chosen, budget_);
   }
 
@@ -217,7 +218,8 @@ class Rounds {
     summary.bytes = baker_.bytes(result_.selection.chosen);
     if (bound_iterations > 0) {
       update(without_caution());
-      summary.lower_bound_bytes = memory_lower_bound(problem_, summary.bytes, bound_iterations, budget_);
+      const SelectionConfig config{.bound_iterations = bound_iterations, .threads = world_.threads};
+      summary.lower_bound_bytes = memory_lower_bound(problem_, summary.bytes, config, budget_);
     }
     collect(result_, baker_);
     return std::move(result_);

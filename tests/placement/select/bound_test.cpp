@@ -12,7 +12,7 @@ namespace {
 
 double bound_of(const SelectionProblem& problem, double upper_bytes, int iterations) {
   const TreeOrder order(problem.parent);
-  return lagrangian_bound(problem, Columns(problem, order), {}, upper_bytes, iterations, {});
+  return lagrangian_bound(problem, Columns(problem, order), {}, upper_bytes, iterations, 1, {});
 }
 
 TEST(LagrangianBound, NeverAboveTheOptimum) {
@@ -70,8 +70,8 @@ TEST(LagrangianBound, IgnoredCpvsDoNotCount) {
   const auto problem = make_problem({-1, 0, 0}, {{1, 2.0, {{0, {2.0}}}}, {2, 7.0, {{1, {2.0}}}}}, {2.0, 2.0});
   const TreeOrder order(problem.parent);
   const Columns columns(problem, order);
-  EXPECT_NEAR(lagrangian_bound(problem, columns, {false, false}, 9.0, 100, {}), 9.0, 1e-6);
-  EXPECT_NEAR(lagrangian_bound(problem, columns, {false, true}, 2.0, 100, {}), 2.0, 1e-6);
+  EXPECT_NEAR(lagrangian_bound(problem, columns, {false, false}, 9.0, 100, 2, {}), 9.0, 1e-6);
+  EXPECT_NEAR(lagrangian_bound(problem, columns, {false, true}, 2.0, 100, 1, {}), 2.0, 1e-6);
 }
 
 }  // namespace

@@ -42,7 +42,7 @@ TEST(GreedyInstances, SafeOrderIsReproducedLazilyAndPlainly) {
     const std::vector<bool> none(problem.candidate_count(), false);
     for (const bool lazy : {true, false}) {
       GreedyState state(problem, order, {});
-      const auto picks = lazy ? pick_lazily(state, none, {}) : pick_plainly(state, none, {});
+      const auto picks = lazy ? pick_lazily(state, none, 1, {}) : pick_plainly(state, none, {});
       EXPECT_EQ(picks.order, expected) << vector.dump();
       EXPECT_EQ(state.all_met(), safe.at("complete").get<bool>());
     }

@@ -14,7 +14,7 @@ GreedyPicks picks_of(const SelectionProblem& problem, bool lazy) {
   const TreeOrder order(problem.parent);
   GreedyState state(problem, order, {});
   const std::vector<bool> none(problem.candidate_count(), false);
-  return lazy ? pick_lazily(state, none, {}) : pick_plainly(state, none, {});
+  return lazy ? pick_lazily(state, none, 1, {}) : pick_plainly(state, none, {});
 }
 
 void expect_same_picks(const char* name, const RandomShape& shape, std::uint64_t seeds) {

@@ -152,6 +152,17 @@ TEST(SelectorLaws, FactoredAndExplicitGainsAreTheSameProblem) {
   }
 }
 
+TEST(SelectorLaws, ThreadsDoNotMatter) {
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    const auto problem = random_factored_problem(seed, {.nodes = 40, .candidates = 9000, .cells = 30, .demand = 60.0});
+    const auto one = select_impostors(problem, {.bound_iterations = 10}, {}, {});
+    const auto four = select_impostors(problem, {.bound_iterations = 10, .threads = 4}, {}, {});
+    EXPECT_EQ(one.chosen, four.chosen) << "seed " << seed;
+    EXPECT_EQ(one.summary.evaluations, four.summary.evaluations);
+    EXPECT_EQ(one.summary.lower_bound_bytes, four.summary.lower_bound_bytes);
+  }
+}
+
 TEST(SelectorLaws, OrderOfCpvsDoesNotMatterForExactGains) {
   for (std::uint64_t seed = 1; seed <= 100; ++seed) {
     const auto problem = random_problem(seed, {.nodes = 20, .candidates = 40, .cpvs = 8, .demand = 20.0});
