@@ -18,7 +18,9 @@ namespace {
 constexpr std::uint64_t kShares = 76;
 constexpr std::uint64_t kRaysPerShare = 8;
 static_assert(kRaysPerShare * kShares * kShares >= 46'100, "ln 0.01 / ln(1 - 1e-4): what certifies a share of 1e-4 at 99 %");
-constexpr std::uint64_t kAimedRays = 2;       // per object and round
+// Aimed in one round: at each object at least kLeastAimed rays, and so many more that all together are a quarter of a batch.
+constexpr std::uint64_t kLeastAimed = 2;
+constexpr std::uint64_t kAimedRays = kRaysPerShare * kShares * kShares / 4;
 constexpr std::uint64_t kExploringRays = 64;  // per object found
 constexpr double kExploredBounds = 2.0;       // times the found object's size
 constexpr double kExploredRegion = 0.2;       // times the region's
@@ -110,10 +112,11 @@ class RegionSampler {
     if (limit == 0) return;
     const auto count = static_cast<std::uint32_t>(confirmed_.size());
     const auto first = static_cast<std::uint32_t>(rng_.below(count));
+    const std::uint64_t rays_each = std::max(kLeastAimed, kAimedRays / count);
     for (std::uint32_t i = 0; i < count; ++i) {
       budget_.check();
       const std::uint32_t object = (first + i) % count;
-      for (std::uint64_t k = 0; k < kAimedRays && !is_found(object); ++k) {
+      for (std::uint64_t k = 0; k < rays_each && !is_found(object); ++k) {
         if (limit-- == 0 || rays_left_ == 0) return;
         --rays_left_;
         const Vec3 position = random_point(rng_, region_);
