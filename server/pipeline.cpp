@@ -283,7 +283,8 @@ Placed place_impostors(Surveyed& job, const JobSpec& spec, StageClock& clock, co
 VerifyResult verify(const Surveyed& job, const Placed& placed, const JobSpec& spec, const WorkBudget& budget) {
   const World& world = job.world;
   const double alpha_rad = world.quality.alpha_scale * world.camera.pixel_angle_rad();
-  const VerifyInput input{world.scene, job.target, placed.placement, world.view_space, world.camera, placed.glb, spec.budget_ms, alpha_rad};
+  const VerifyInput input{world.scene, job.target,     placed.placement, world.view_space,         world.camera,
+                          placed.glb,  spec.budget_ms, alpha_rad,        job.survey.worst_frame_ms};
   VerifyOptions options;
   options.views = spec.verify_views;
   options.seed = spec.seed + 1;  // not the views the survey saw

@@ -8,8 +8,8 @@
 // The whole batch that found nothing new is a certificate: were the missed share of uniform rays above 1e-4, it would have met nothing
 // new with a probability below 1 %. Each batch is one such test of the set before it; a region has at most rays / 46,208 of them. The
 // missed share itself is Good and Turing's estimate: the expected share of further uniform rays whose first hit is no member of the set,
-// = objects that one uniform ray found and no independent ray confirms / uniform rays. It is an upper estimate, since what that ray's own
-// exploration sees again counts as no confirmation.
+// = objects that one uniform ray found and no independent ray confirms / uniform rays. What that ray's own exploration sees
+// again counts as no confirmation. Measured, it was 0.6 to 1.6 times the true share (tests/bench/place.md).
 #pragma once
 
 #include <cstdint>
