@@ -15,6 +15,7 @@ std::vector<std::uint32_t> visible_objects(const DraftContext& context, std::uin
     for (const std::uint32_t rank : context.index.visible_in(cell, node)) objects.push_back(context.hierarchy.order[rank]);
   std::sort(objects.begin(), objects.end());
   objects.erase(std::unique(objects.begin(), objects.end()), objects.end());
+  objects.shrink_to_fit();  // candidates are millions, and most cells of a set see the same objects
   return objects;
 }
 

@@ -147,11 +147,20 @@ class Dual {
 
   // Nearly all of the bound's time: one line per gain of the problem.
   [[nodiscard]] double payment(std::uint32_t candidate) const {
+    const std::size_t stages = problem_.stages;
+    const double* costs = problem_.cost.data() + candidate * problem_.forms * stages;
     double sum = 0.0;
-    for (const BlockRun& run : problem_.runs_of(candidate))
-      for (std::uint32_t e = problem_.block_offset[run.begin]; e < problem_.block_offset[run.end]; ++e)
-        for (std::uint32_t k = 0; k < problem_.stages; ++k)
-          sum += constraints_[constraint(e, k)].bytes_per_gain * useful_gain({candidate, e}, k);
+    for (const BlockRun& run : problem_.runs_of(candidate)) {
+      const std::size_t end = problem_.block_offset[run.end];
+      for (std::size_t e = problem_.block_offset[run.begin]; e < end; ++e) {
+        const std::size_t p = problem_.cpv[e];
+        const double* cost = costs + problem_.form[p] * stages;
+        for (std::size_t k = 0; k < stages; ++k) {
+          const Constraint& at = constraints_[p * stages + k];
+          sum += at.bytes_per_gain * std::max(0.0, std::min(problem_.worth[e * stages + k] - cost[k], at.deficit));
+        }
+      }
+    }
     return sum;
   }
 

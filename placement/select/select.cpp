@@ -41,13 +41,15 @@ class Selector {
   }
 
  private:
-  /// CPVs that need nothing, and those that nothing can solve: no bytes are spent on either.
+  /// CPVs that need nothing, and those that nothing can solve: no bytes are spent on either. What S meets needs no look at all candidates.
   void set_aside() {
     ignored_.assign(problem_.cpv_count(), false);
     for (std::uint32_t p = 0; p < problem_.cpv_count(); ++p) {
       budget_.check();
       if (!needs_gain(p)) {
         ignored_[p] = true;
+      } else if (cover_.best(p).meets()) {
+        continue;
       } else if (const Antichain best = best_of_all(p); !best.meets()) {
         ignored_[p] = true;
         result_.summary.unmet.push_back({p, best.violation});
@@ -56,11 +58,17 @@ class Selector {
   }
 
   void pick() {
-    std::vector<bool> taken(problem_.candidate_count());
-    for (std::uint32_t c = 0; c < taken.size(); ++c) taken[c] = cover_.contains(c);
     GreedyState state(problem_, order_, ignored_);
-    for (std::uint32_t p = 0; p < problem_.cpv_count(); ++p)
-      if (!ignored_[p]) state.represent(cover_.best(p).members);
+    std::vector<std::uint32_t> unmet;
+    for (std::uint32_t p = 0; p < problem_.cpv_count(); ++p) {
+      if (ignored_[p]) continue;
+      const Antichain now = cover_.best(p);
+      state.represent(now.members);
+      if (!now.meets()) unmet.push_back(p);
+    }
+    // Candidates that list no unmet CPV have no score.
+    std::vector<bool> taken = columns_.candidates_without(unmet);
+    for (const std::uint32_t member : cover_.members()) taken[member] = true;
 
     const GreedyPicks picks = config_.lazy ? pick_lazily(state, taken, config_.threads, budget_) : pick_plainly(state, taken, budget_);
     for (const std::uint32_t candidate : picks.order) cover_.add(candidate);

@@ -141,6 +141,19 @@ void Columns::read_best(std::uint32_t cpv, std::vector<Serving>& servings) const
   }
 }
 
+std::vector<bool> Columns::candidates_without(std::span<const std::uint32_t> cpvs) const {
+  std::vector<bool> looked_at(problem_.block_count(), false);
+  std::vector<bool> without(problem_.candidate_count(), true);
+  for (const std::uint32_t cpv : cpvs) {
+    for (const std::uint32_t block : blocks(cpv)) {
+      if (looked_at[block]) continue;
+      looked_at[block] = true;
+      for (const std::uint32_t candidate : candidates(block)) without[candidate] = false;
+    }
+  }
+  return without;
+}
+
 std::uint64_t Columns::coverage(std::uint32_t cpv) const {
   std::uint64_t count = 0;
   for (const std::uint32_t block : blocks(cpv)) count += candidates(block).size();

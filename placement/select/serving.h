@@ -30,6 +30,8 @@ class Columns {
   /// One stage: only the candidate of each block that gains most, i.e. costs least; ties to fewer bytes, then to the lower id. No antichain
   /// gains more than the best of these.
   void read_best(std::uint32_t cpv, std::vector<Serving>& servings) const;
+  /// Per candidate: whether it lists none of the CPVs.
+  [[nodiscard]] std::vector<bool> candidates_without(std::span<const std::uint32_t> cpvs) const;
   /// How many candidates list the CPV.
   [[nodiscard]] std::uint64_t coverage(std::uint32_t cpv) const;
 

@@ -32,6 +32,9 @@ struct BakedSize {
   ImpostorCost cost;
 };
 
+// What cannot be baked costs more than anything: it gains nowhere, and the next round lets go of it.
+constexpr BakedSize kImpossible{1e15, {1e15, 1e15, 1.0}};
+
 // Keeps what was baked across rounds; candidate ids stay the same throughout.
 class Baker {
  public:
@@ -75,9 +78,7 @@ class Baker {
     }
   }
 
-  // What cannot be baked costs more than anything: it gains nowhere, and the next round lets go of it.
   void keep(std::uint32_t id, std::optional<Impostor> impostor) {
-    constexpr BakedSize kImpossible{1e15, {1e15, 1e15, 1.0}};
     sizes_[id] = kImpossible;
     if (impostor) sizes_[id] = BakedSize{std::max(1.0, static_cast<double>(texture_bytes(*impostor))), impostor_cost(*impostor)};
     baked_.emplace(id, impostor ? std::move(*impostor) : Impostor{});
@@ -101,10 +102,11 @@ struct Correction {
 
 constexpr double kBytesShare = 0.75;
 constexpr double kCostShare = 0.95;
+constexpr std::size_t kCarefulRounds = 2;  // after so many, the greatest factor seen
 
 double quantile(std::vector<double> ratios, double share) {
   if (ratios.empty()) return 1.0;
-  const auto position = ratios.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(ratios.size()));
+  const auto position = ratios.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(ratios.size() - 1));
   std::nth_element(ratios.begin(), position, ratios.end());
   return *position;
 }
@@ -113,20 +115,23 @@ double pixels_of(const ImpostorCost& cost) {
   return cost.texels * cost.texel_angle_rad * cost.texel_angle_rad;
 }
 
-Correction compare(const std::vector<Candidate>& estimated, const std::vector<std::optional<BakedSize>>& real) {
+Correction compare(const std::vector<Candidate>& estimated, const std::vector<std::optional<BakedSize>>& real, double cost_share) {
   std::vector<double> bytes, quads, texels;
   for (std::size_t id = 0; id < estimated.size(); ++id) {
-    if (!real[id] || !(pixels_of(estimated[id].cost) > 0.0) || !(estimated[id].cost.quads > 0.0)) continue;
+    if (!real[id] || real[id]->bytes == kImpossible.bytes || !(pixels_of(estimated[id].cost) > 0.0) || !(estimated[id].cost.quads > 0.0))
+      continue;
     bytes.push_back(real[id]->bytes / estimated[id].bytes);
     quads.push_back(real[id]->cost.quads / estimated[id].cost.quads);
     texels.push_back(pixels_of(real[id]->cost) / pixels_of(estimated[id].cost));
   }
-  return {quantile(bytes, kBytesShare), quantile(quads, kCostShare), quantile(texels, kCostShare)};
+  return {quantile(bytes, kBytesShare), quantile(quads, cost_share), quantile(texels, cost_share)};
 }
 
 ImpostorCost corrected(const ImpostorCost& cost, const Correction& by) {
   return {cost.quads * by.quads, cost.texels * by.texels, cost.texel_angle_rad};
 }
+
+constexpr int kBoldRounds = 3;
 
 // CPVs whose real bound misses the budget although the selection called them met.
 std::uint32_t count_short(const Subdivision& subdivision, const Selection& selection, const Baker& baker, const World& world,
@@ -209,8 +214,9 @@ class Rounds {
       cautious_ = false;
       done = false;
     }
-    update(cautious_ ? compare(candidates_.candidates, baker_.sizes()) : without_caution());
-    return done;
+    const double cost_share = result_.rounds.size() < kCarefulRounds ? kCostShare : 1.0;
+    update(cautious_ ? compare(candidates_.candidates, baker_.sizes(), cost_share) : without_caution());
+    return done || (!cautious_ && bold_rounds_++ == kBoldRounds);
   }
 
   SelectedImpostors finish(int bound_iterations) {
@@ -253,8 +259,9 @@ class Rounds {
   Baker baker_;
   SelectionProblem problem_;
   // Costs of what is not baked are estimated with caution, so that few bakes leave a region short. Once all else is settled, regions that
-  // nothing solves by such costs are tried without.
+  // nothing solves by such costs are tried without, for a few rounds.
   bool cautious_ = true;
+  int bold_rounds_ = 0;
   SelectedImpostors result_;
 };
 

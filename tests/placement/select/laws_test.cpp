@@ -147,7 +147,6 @@ TEST(SelectorLaws, FactoredAndExplicitGainsAreTheSameProblem) {
       const auto b = select_impostors(written_out, {.exchange_rounds = 1}, {}, {});
       ASSERT_EQ(a.chosen, b.chosen) << "seed " << seed << ", stages " << stages;
       ASSERT_EQ(a.assigned, b.assigned) << "seed " << seed << ", stages " << stages;
-      EXPECT_EQ(a.summary.evaluations, b.summary.evaluations);
     }
   }
 }
