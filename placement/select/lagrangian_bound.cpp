@@ -17,6 +17,23 @@ constexpr int kPatience = 10;  // steps
 
 constexpr std::size_t kChunk = 4096;  // candidates a task
 
+// All steps together pass over so many gains at most, about a minute: with a thousand million of them the bound would take longer than
+// everything it judges. The first steps gain most of it.
+constexpr std::uint64_t kMostGains = 10'000'000'000;
+constexpr std::uint64_t kLeastSteps = 10;
+
+std::uint64_t gains_of(const SelectionProblem& problem, std::uint32_t candidate) {
+  std::uint64_t gains = 0;
+  for (const BlockRun& run : problem.runs_of(candidate)) gains += problem.block_offset[run.end] - problem.block_offset[run.begin];
+  return gains * problem.stages;
+}
+
+int affordable_steps(const SelectionProblem& problem, int asked) {
+  std::uint64_t gains = 1;
+  for (std::uint32_t c = 0; c < problem.candidate_count(); ++c) gains += gains_of(problem, c);
+  return static_cast<int>(std::min(static_cast<std::uint64_t>(std::max(asked, 0)), std::max(kLeastSteps, kMostGains / gains)));
+}
+
 /// Constraint q = (CPV, stage) is kept in units of its own deficit: coverage a / D in [0, 1] of a demand of 1, at a price lambda D in
 /// bytes. Deficits of 1e-12 and 1e12 then weigh the same.
 class Dual {
@@ -183,12 +200,8 @@ class Dual {
 
   [[nodiscard]] std::uint64_t longest_row() const {
     std::uint64_t longest = 0;
-    for (std::uint32_t c = 0; c < problem_.candidate_count(); ++c) {
-      std::uint64_t entries = 0;
-      for (const BlockRun& run : problem_.runs_of(c)) entries += problem_.block_offset[run.end] - problem_.block_offset[run.begin];
-      longest = std::max(longest, entries);
-    }
-    return longest * problem_.stages;
+    for (std::uint32_t c = 0; c < problem_.candidate_count(); ++c) longest = std::max(longest, gains_of(problem_, c));
+    return longest;
   }
 
   const SelectionProblem& problem_;
