@@ -216,20 +216,6 @@ class Dual {
 
 }  // namespace
 
-namespace {
-
-// A step looks at every gain. On a scene with thousands of millions of them a hundred steps would take longer than the selection: as many
-// as fit into so many looks, which depends on the problem alone and not on the clock.
-constexpr double kMostLooks = 2e10;
-
-int affordable_steps(const SelectionProblem& problem, int iterations) {
-  double looks = 1.0;
-  for (const BlockRun& run : problem.runs) looks += problem.block_offset[run.end] - problem.block_offset[run.begin];
-  return static_cast<int>(std::min<double>(iterations, kMostLooks / (looks * problem.stages)));
-}
-
-}  // namespace
-
 double lagrangian_bound(const SelectionProblem& problem, const Columns& columns, const std::vector<bool>& ignored, double upper_bound_bytes,
                         int iterations, int threads, const WorkBudget& budget) {
   Dual dual(problem, columns, ignored, threads);

@@ -18,8 +18,7 @@ namespace standin {
 
 /// Rows of CPVs with `ignored[p]` are dropped. `upper_bound_bytes`: of a known solution (it scales the steps). On very large problems fewer
 /// steps than `iterations` are made. 0 iterations: the ascent alone. Rounding is charged to the bound, so it is never above the optimum.
-/// The same for any number of threads. Fewer iterations
-/// where the problem is so large that they would take many minutes.
+/// The same for any number of threads.
 [[nodiscard]] double lagrangian_bound(const SelectionProblem& problem, const Columns& columns, const std::vector<bool>& ignored,
                                       double upper_bound_bytes, int iterations, int threads, const WorkBudget& budget);
 
