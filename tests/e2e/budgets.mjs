@@ -31,8 +31,9 @@ function expectExplained({ placement, metrics }) {
   }
 }
 
-test("a budget just below what is reachable: the rest is solved, exit code 1", () => {
-  const result = place(1, 0.95 * survey.reachable_all_ms);
+// What is reachable is drafted with cautious costs: real bakes may do a few per cent better.
+test("a budget below what is reachable: the rest is solved, exit code 1", () => {
+  const result = place(1, 0.9 * survey.reachable_all_ms);
   const { metrics, out } = result;
   assert.ok(metrics.cpv.unsolved > 0 && metrics.cpv.solved > metrics.cpv.unsolved, JSON.stringify(metrics.cpv));
   expectExplained(result);
