@@ -182,6 +182,14 @@ std::string fingerprint(const char* kind, const JobFiles& files, const JobSpec& 
       .dump();
 }
 
+// The selection speaks of the costs it was given: where the rounds ended before real bakes agreed with them, that is said too.
+std::string select_message(const SelectedImpostors& selected) {
+  const std::string& message = selected.selection.summary.message;
+  const std::uint32_t short_cpvs = selected.rounds.empty() ? 0 : selected.rounds.back().short_cpvs;
+  if (short_cpvs == 0) return message;
+  return message + " by its estimates; " + std::to_string(short_cpvs) + " fell short once baked, when the rounds ended";
+}
+
 json select_metrics(const SelectedImpostors& selected, const Placement& placement) {
   json rounds = json::array();
   for (const auto& round : selected.rounds)
@@ -190,8 +198,8 @@ json select_metrics(const SelectedImpostors& selected, const Placement& placemen
                       {"estimated_bytes", round.estimated_bytes},
                       {"real_bytes", round.real_bytes}});
   const SelectionSummary& summary = selected.selection.summary;
-  return {{"message", summary.message},         {"picked_by_greedy", summary.picked_by_greedy}, {"stalled", summary.stalled},
-          {"evaluations", summary.evaluations}, {"bytes_greedy", summary.bytes_greedy},         {"impostors", placement.impostors.size()},
+  return {{"message", select_message(selected)}, {"picked_by_greedy", summary.picked_by_greedy}, {"stalled", summary.stalled},
+          {"evaluations", summary.evaluations},  {"bytes_greedy", summary.bytes_greedy},         {"impostors", placement.impostors.size()},
           {"rounds", std::move(rounds)}};
 }
 

@@ -77,37 +77,53 @@ void check_selector_laws(const SelectionProblem& problem, const Selector& select
   if (exact->bytes > 0.0) worst_ratio = std::max(worst_ratio, summary.bytes / exact->bytes);
 }
 
-void check_many(const char* name, const RandomShape& shape, std::uint64_t seeds, const SelectionConfig& config) {
+/// Checks the problems of seeds 1, 2, .. `seeds`; returns how many kept every law, stopping at the first that does not.
+std::uint64_t kept_by(std::uint64_t seeds, const std::function<SelectionProblem(std::uint64_t)>& problem_of,
+                      const SelectionConfig& config = {}) {
   double worst_ratio = 1.0;
   for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
-    SCOPED_TRACE(std::string(name) + ", seed " + std::to_string(seed));
+    SCOPED_TRACE("seed " + std::to_string(seed));
     check_selector_laws(
-        random_problem(seed, shape), [&](const auto& problem) { return select_impostors(problem, config, {}, {}); }, worst_ratio);
-    if (testing::Test::HasFailure()) return;
+        problem_of(seed), [&](const auto& problem) { return select_impostors(problem, config, {}, {}); }, worst_ratio);
+    if (testing::Test::HasFailure()) return seed - 1;
   }
-  std::printf("%s: %lu instances, worst bytes / optimum %.3f\n", name, static_cast<unsigned long>(seeds), worst_ratio);
+  std::printf("%lu instances, worst bytes / optimum %.3f\n", static_cast<unsigned long>(seeds), worst_ratio);
+  return seeds;
+}
+
+std::function<SelectionProblem(std::uint64_t)> random_problems(const RandomShape& shape) {
+  return [=](std::uint64_t seed) { return random_problem(seed, shape); };
+}
+std::function<SelectionProblem(std::uint64_t)> factored_problems(const FactoredShape& shape) {
+  return [=](std::uint64_t seed) { return random_factored_problem(seed, shape); };
 }
 
 TEST(SelectorLaws, OneStage) {
-  check_many("one stage", {}, 250, {});
+  EXPECT_EQ(kept_by(250, random_problems({})), 250U);
 }
 TEST(SelectorLaws, OneStageReal) {
-  check_many("one stage, real gains", {.integers = false}, 250, {});
+  EXPECT_EQ(kept_by(250, random_problems({.integers = false})), 250U);
 }
 TEST(SelectorLaws, ManyTies) {
-  check_many("ties", {.ties = true}, 250, {});
+  EXPECT_EQ(kept_by(250, random_problems({.ties = true})), 250U);
 }
 TEST(SelectorLaws, ThreeStages) {
-  check_many("three stages", {.stages = 3}, 150, {});
+  EXPECT_EQ(kept_by(150, random_problems({.stages = 3})), 150U);
 }
 TEST(SelectorLaws, ThreeStagesSomeGainsNegative) {
-  check_many("three stages, negative gains", {.stages = 3, .negative = 0.4, .demand = 7.0}, 150, {});
+  EXPECT_EQ(kept_by(150, random_problems({.stages = 3, .negative = 0.4, .demand = 7.0})), 150U);
 }
 TEST(SelectorLaws, PlainGreedy) {
-  check_many("plain", {}, 100, {.lazy = false});
+  EXPECT_EQ(kept_by(100, random_problems({}), {.lazy = false}), 100U);
 }
 TEST(SelectorLaws, Exchange) {
-  check_many("exchange", {}, 150, {.exchange_rounds = 10});
+  EXPECT_EQ(kept_by(150, random_problems({}), {.exchange_rounds = 10}), 150U);
+}
+TEST(SelectorLaws, FactoredGains) {
+  EXPECT_EQ(kept_by(250, factored_problems({})), 250U);
+}
+TEST(SelectorLaws, FactoredGainsInTwoStages) {
+  EXPECT_EQ(kept_by(150, factored_problems({.stages = 2})), 150U);
 }
 
 TEST(SelectorLaws, ExchangeNeverCosts) {
@@ -117,24 +133,6 @@ TEST(SelectorLaws, ExchangeNeverCosts) {
     const auto with = select_impostors(problem, {.exchange_rounds = 5}, {}, {});
     EXPECT_LE(with.summary.bytes, without.summary.bytes) << "seed " << seed;
   }
-}
-
-void check_many_factored(const char* name, const FactoredShape& shape, std::uint64_t seeds) {
-  double worst_ratio = 1.0;
-  for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
-    SCOPED_TRACE(std::string(name) + ", seed " + std::to_string(seed));
-    check_selector_laws(
-        random_factored_problem(seed, shape), [](const auto& problem) { return select_impostors(problem, {}, {}, {}); }, worst_ratio);
-    if (testing::Test::HasFailure()) return;
-  }
-  std::printf("%s: %lu instances, worst bytes / optimum %.3f\n", name, static_cast<unsigned long>(seeds), worst_ratio);
-}
-
-TEST(SelectorLaws, FactoredGains) {
-  check_many_factored("factored", {}, 250);
-}
-TEST(SelectorLaws, FactoredGainsInTwoStages) {
-  check_many_factored("factored, two stages", {.stages = 2}, 150);
 }
 
 TEST(SelectorLaws, FactoredAndExplicitGainsAreTheSameProblem) {

@@ -9,21 +9,14 @@
 #include "render/base/error.h"
 #include "render/base/sha256.h"
 #include "render/base/staged_file.h"
+#include "tests/support/temp_folder.h"
 
 namespace standin {
 namespace {
 
 namespace fs = std::filesystem;
 
-class StagedFile : public testing::Test {
- protected:
-  StagedFile() { fs::create_directories(root_); }
-  ~StagedFile() override { fs::remove_all(root_); }
-
-  [[nodiscard]] std::size_t entries() const { return static_cast<std::size_t>(std::distance(fs::directory_iterator(root_), {})); }
-
-  fs::path root_ = fs::temp_directory_path() / ("standin_staged_" + std::to_string(::getpid()));
-};
+using StagedFile = test::TempFolder;
 
 TEST_F(StagedFile, ReplacesAndLeavesNothingBeside) {
   write_file(root_ / "x", "1");

@@ -10,26 +10,21 @@
 
 #include "render/base/error.h"
 #include "render/base/staged_file.h"
+#include "tests/support/temp_folder.h"
 
 namespace standin {
 namespace {
 
 namespace fs = std::filesystem;
 
-class OutputFolderTest : public testing::Test {
+class OutputFolderTest : public test::TempFolder {
  protected:
-  OutputFolderTest() { fs::create_directories(root_); }
-  ~OutputFolderTest() override { fs::remove_all(root_); }
-
-  [[nodiscard]] std::size_t entries() const { return static_cast<std::size_t>(std::distance(fs::directory_iterator(root_), {})); }
-
   void commit_result() const {
     OutputFolder output(folder_, "job 1");
     output.write("a.txt", "alpha");
     output.commit();
   }
 
-  fs::path root_ = fs::temp_directory_path() / ("standin_output_" + std::to_string(::getpid()));
   fs::path folder_ = root_ / "result";
 };
 
