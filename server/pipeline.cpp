@@ -33,8 +33,6 @@ namespace {
 
 using nlohmann::json;
 
-// A scene whose lowest reachable budget is no lower than this share of its highest bound is one that impostors cannot help.
-constexpr double kHelpfulShare = 0.98;
 constexpr const char* kNoProblemViews = "no problem views: every region's bound is within the budget";
 
 struct Surveyed {
@@ -77,28 +75,31 @@ SizeModel fit_sizes(const Surveyed& job, const Subdivision& whole, const JobSpec
   return fit_size_model(world.scene, set.candidates, world.camera, world.quality, spec.size_bakes, spec.seed, world.threads, budget);
 }
 
-// What impostors could do for the worst views; where no view exceeds `budget_ms`, nobody asks.
-void add_reach(Surveyed& job, const JobSpec& spec, double budget_ms, StageClock& clock, const WorkBudget& budget) {
+// What impostors could do for the worst views; where the placement at hand has no problem view, nobody asks.
+void add_reach(Surveyed& job, const JobSpec& spec, const Subdivision* problem, StageClock& clock, const WorkBudget& budget) {
   const World& world = job.world;
   const TimeModel& model = job.target.model;
-  Subdivision whole = clock.run("survey", [&] { return problem_views(world, model, std::numeric_limits<double>::infinity(), budget); });
-  if (model.bound_ms(whole.worst_predicted_ms) <= budget_ms && !forced(spec, "candidates")) {
+  if (problem != nullptr && problem->cpvs.empty() && !forced(spec, "candidates")) {
     clock.skip("size_model", kNoProblemViews);
     clock.leave_out("survey", std::string(kNoProblemViews) + ", so nobody asks how low the budget could go");
-    job.reach = without_reach(model, std::move(whole));
+    job.reach = without_reach(model, *problem);
     return;
   }
+  const Subdivision whole =
+      clock.run("survey", [&] { return problem_views(world, model, std::numeric_limits<double>::infinity(), budget); });
   job.sizes = clock.run("size_model", [&] { return fit_sizes(job, whole, spec, budget); });
   job.reach = clock.run("survey", [&] { return summarise_reach(world, model, whole, job.sizes, job.candidate_options, budget); });
 }
 
-// `budget_ms`: of a placement; 0: none.
-void survey_scene(const JobFiles& files, const JobSpec& spec, double budget_ms, StageClock& clock, const WorkBudget& budget,
-                  Surveyed& job) {
+void load_job(const JobFiles& files, const JobSpec& spec, StageClock& clock, const WorkBudget& budget, Surveyed& job) {
   job.target = read_target(files.target);
   build_world(files.scene, spec, clock, budget, job.world);
   job.candidate_options = candidate_options_of(spec, job.world.threads);
-  add_reach(job, spec, budget_ms, clock, budget);
+}
+
+// `problem`: the problem views of a placement, if there is one.
+void survey_scene(Surveyed& job, const JobSpec& spec, const Subdivision* problem, StageClock& clock, const WorkBudget& budget) {
+  add_reach(job, spec, problem, clock, budget);
   clock.run("survey", [&] {
     SurveyOptions options;
     options.views = static_cast<std::uint32_t>(spec.survey_views);
@@ -122,21 +123,18 @@ std::string names_of(const std::vector<std::uint32_t>& objects, const Scene& sce
   return names;
 }
 
-// How low a budget can be promised, with and without impostors. These are bounds: the estimate of the worst sampled view stands below them,
-// and says which budgets may hold although nobody can promise it.
+// How low a budget can be promised, with and without impostors, beside the worst view that was sampled. Promises are bounds, the worst view
+// is an estimate: where no promise comes down to it, impostors are no help there.
 std::string verdict(const Surveyed& job) {
   const ReachSummary& reach = job.reach;
   const std::string without = milliseconds(reach.worst_bound_ms);
   if (!reach.known) return "no view needs impostors: every bound is within " + without;
-  const std::string blockers = names_of(reach.blockers, job.world.scene);
-  if (reach.all_ms >= kHelpfulShare * reach.worst_bound_ms)
-    return "impostors cannot help the slowest views on this target: their bound stays at " + without +
-           ", near or light geometry, above all " + blockers;
-  const std::string sentence = "impostors help: every view can be promised " + milliseconds(reach.all_ms) + ", without them " + without;
   const double worst_ms = job.survey.worst_frame_ms;
-  if (reach.all_ms < worst_ms) return sentence + "; the worst sampled view is estimated at " + milliseconds(worst_ms);
-  return sentence + "; since the worst sampled view is estimated at " + milliseconds(worst_ms) +
-         ", a budget between may hold without any impostor, but cannot be promised, above all because of " + blockers;
+  const std::string promise = "every view can be promised " + milliseconds(reach.all_ms) + ", without them " + without +
+                              "; the worst sampled view is estimated at " + milliseconds(worst_ms);
+  if (reach.all_ms < worst_ms) return "impostors help: " + promise;
+  return "impostors cannot bring the slowest views down on this target: " + promise +
+         "; what is left is near or light geometry, above all " + names_of(reach.blockers, job.world.scene);
 }
 
 json survey_json(const Surveyed& job) {
@@ -264,12 +262,9 @@ void choose_and_bake(const Surveyed& job, const JobSpec& spec, Placed& placed, S
   name_culling_left_out(placed.selected.impostors, spec, clock);
 }
 
-Placed place_impostors(Surveyed& job, const JobSpec& spec, StageClock& clock, const WorkBudget& budget) {
+void place_impostors(const Surveyed& job, const JobSpec& spec, Placed& placed, StageClock& clock, const WorkBudget& budget) {
   const World& world = job.world;
   const TimeModel& model = job.target.model;
-  Placed placed;
-  placed.subdivision =
-      clock.run("view_space", [&] { return problem_views(world, model, model.predicted_budget_ms(spec.budget_ms), budget); });
   if (placed.subdivision.cpvs.empty() && !forced(spec, "candidates")) {
     for (const char* stage : {"candidates", "select", "bake"}) clock.skip(stage, kNoProblemViews);
     placed.selected.atlas_pages = 1;  // as a selection of nothing has it
@@ -285,7 +280,6 @@ Placed place_impostors(Surveyed& job, const JobSpec& spec, StageClock& clock, co
     placed.set = pack_atlas(std::move(impostors));
     placed.glb = encode_impostor_glb(placed.set);
   });
-  return placed;
 }
 
 VerifyResult verify(const Surveyed& job, const Placed& placed, const JobSpec& spec, const WorkBudget& budget) {
@@ -326,7 +320,8 @@ JobOutcome run_survey(const JobFiles& files, const JobSpec& spec, const WorkBudg
   if (!files.folder.empty()) folder.emplace(files.folder, fingerprint("survey", files, spec));
   StageClock clock(budget);
   Surveyed job;
-  survey_scene(files, spec, 0.0, clock, budget, job);
+  load_job(files, spec, clock, budget, job);
+  survey_scene(job, spec, nullptr, clock, budget);
   JobOutcome outcome;
   outcome.metrics = common_metrics(job, clock);
   outcome.metrics["causes"] = causes_json(job.world, job.reach.subdivision, job.target.model);
@@ -344,8 +339,14 @@ JobOutcome run_place(const JobFiles& files, const JobSpec& spec, const WorkBudge
   OutputFolder folder(files.folder, fingerprint("place", files, spec));
   StageClock clock(budget);
   Surveyed job;
-  survey_scene(files, spec, spec.budget_ms, clock, budget, job);
-  const Placed placed = place_impostors(job, spec, clock, budget);
+  Placed placed;
+  load_job(files, spec, clock, budget, job);
+  placed.subdivision = clock.run("view_space", [&] {
+    return problem_views(job.world, job.target.model, job.target.model.predicted_budget_ms(spec.budget_ms), budget);
+  });
+  survey_scene(job, spec, &placed.subdivision, clock, budget);
+  job.reach.subdivision = {};  // as large as the problem views, and only the survey asks for it
+  place_impostors(job, spec, placed, clock, budget);
   const json curves =
       clock.run("curves", [&] { return curves_json(job, spec, placed.subdivision, placed.selected, placed.set.impostors, clock, budget); });
   const VerifyResult verified = clock.run("verify", [&] { return verify(job, placed, spec, budget); });

@@ -58,7 +58,7 @@ class Selector {
   }
 
   void pick() {
-    GreedyState state(problem_, order_, ignored_);
+    GreedyState state(problem_, columns_, ignored_);
     std::vector<std::uint32_t> unmet;
     for (std::uint32_t p = 0; p < problem_.cpv_count(); ++p) {
       if (ignored_[p]) continue;

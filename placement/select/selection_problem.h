@@ -68,12 +68,18 @@ struct SelectionProblem {
       if (gain(candidate, entry, k) > 0.0) return true;
     return false;
   }
-  /// Calls visit(entry) for every CPV that the candidate serves, always in the same order.
+  /// Calls visit(entry) for every entry of the candidate's blocks, always in the same order.
+  template <class Visit>
+  void for_each_listed(std::uint32_t candidate, Visit&& visit) const {
+    for (const BlockRun& run : runs_of(candidate))
+      for (std::uint32_t e = block_offset[run.begin]; e < block_offset[run.end]; ++e) visit(e);
+  }
+  /// Of these, those where some stage gains: what the candidate serves.
   template <class Visit>
   void for_each_served(std::uint32_t candidate, Visit&& visit) const {
-    for (const BlockRun& run : runs_of(candidate))
-      for (std::uint32_t e = block_offset[run.begin]; e < block_offset[run.end]; ++e)
-        if (serves(candidate, e)) visit(e);
+    for_each_listed(candidate, [&](std::uint32_t e) {
+      if (serves(candidate, e)) visit(e);
+    });
   }
 };
 

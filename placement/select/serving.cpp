@@ -66,9 +66,9 @@ void validate_candidates(const SelectionProblem& problem) {
 
 }  // namespace
 
-Columns::Columns(const SelectionProblem& problem, const TreeOrder& order) : problem_(problem) {
+Columns::Columns(const SelectionProblem& problem, const TreeOrder& order) : problem_(problem), order_(order) {
   list_candidates();
-  list_blocks(order);
+  list_blocks();
   if (problem.stages == 1) find_best();
 }
 
@@ -86,12 +86,15 @@ void Columns::list_candidates() {
   for_each_block([&](std::uint32_t block, std::uint32_t candidate) { candidate_[next[block]++] = candidate; });
 }
 
-void Columns::list_blocks(const TreeOrder& order) {
+void Columns::list_blocks() {
   std::vector<std::uint32_t> used;
-  for (std::uint32_t b = 0; b < problem_.block_count(); ++b)
-    if (!candidates(b).empty()) used.push_back(b);
-  const auto rank = [&](std::uint32_t block) { return order.first(problem_.node[candidates(block).front()]); };
-  std::stable_sort(used.begin(), used.end(), [&](std::uint32_t a, std::uint32_t b) { return rank(a) < rank(b); });
+  rank_.assign(problem_.block_count(), kNone);
+  for (std::uint32_t b = 0; b < problem_.block_count(); ++b) {
+    if (candidates(b).empty()) continue;
+    used.push_back(b);
+    rank_[b] = order_.first(problem_.node[candidates(b).front()]);
+  }
+  std::stable_sort(used.begin(), used.end(), [&](std::uint32_t a, std::uint32_t b) { return rank_[a] < rank_[b]; });
 
   block_offset_.assign(problem_.cpv_count() + 1, 0);
   for (const std::uint32_t b : used)

@@ -36,10 +36,10 @@ double padded_quantile(std::vector<double> values, std::uint64_t total, double f
   return *position;
 }
 
-ReachSummary without_reach(const TimeModel& model, Subdivision whole) {
+ReachSummary without_reach(const TimeModel& model, Subdivision problem) {
   ReachSummary summary;
-  summary.worst_bound_ms = model.bound_ms(whole.worst_predicted_ms);
-  summary.subdivision = std::move(whole);
+  summary.worst_bound_ms = model.bound_ms(problem.worst_predicted_ms);
+  summary.subdivision = std::move(problem);
   return summary;
 }
 
@@ -47,11 +47,11 @@ ReachSummary summarise_reach(const World& world, const TimeModel& model, const S
                              const CandidateOptions& options, const WorkBudget& budget) {
   ReachSummary summary;
   summary.known = true;
-  const double worst_ms = whole.worst_predicted_ms;
-  summary.worst_bound_ms = model.bound_ms(worst_ms);
+  double worst_ms = whole.worst_predicted_ms;
   for (double share = kFirstShare; share > kLeastShare; share *= kNextShare) {
-    const double threshold_ms = share * worst_ms;
+    const double threshold_ms = share * whole.worst_predicted_ms;
     summary.subdivision = subdivide_at(world, model, threshold_ms, budget);
+    worst_ms = std::min(worst_ms, summary.subdivision.worst_predicted_ms);
     const Reach reach =
         reachable_times(world.scene, world.hierarchy, summary.subdivision, model, sizes, world.camera, world.quality, options, budget);
     summary.reachable_ms.clear();
@@ -66,6 +66,7 @@ ReachSummary summarise_reach(const World& world, const TimeModel& model, const S
   const auto quantile = [&](double share) {
     return model.bound_ms(padded_quantile(summary.reachable_ms, summary.regions, fill_ms, share));
   };
+  summary.worst_bound_ms = model.bound_ms(worst_ms);
   summary.all_ms = quantile(1.0);
   summary.p99_ms = quantile(0.99);
   summary.p90_ms = quantile(0.90);

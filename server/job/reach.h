@@ -23,15 +23,15 @@ struct ReachSummary {
   double all_ms = 0.0;               // bounds, milliseconds
   double p99_ms = 0.0;
   double p90_ms = 0.0;
-  double worst_bound_ms = 0.0;
+  double worst_bound_ms = 0.0;          // once the cells that are slow have been halved: at a budget above it, there is no problem view
   std::vector<std::uint32_t> blockers;  // objects that make up most of what is left in the worst region
 };
 
 /// `whole`: the regions of the view space, without a budget.
 [[nodiscard]] ReachSummary summarise_reach(const World& world, const TimeModel& model, const Subdivision& whole, const SizeModel& sizes,
                                            const CandidateOptions& options, const WorkBudget& budget);
-/// The same where nobody asks how low the budget may go: worst_bound_ms alone is known.
-[[nodiscard]] ReachSummary without_reach(const TimeModel& model, Subdivision whole);
+/// The same where nobody asks how low the budget may go, since `problem` has no problem view: worst_bound_ms alone is known.
+[[nodiscard]] ReachSummary without_reach(const TimeModel& model, Subdivision problem);
 
 /// Value at rank floor(share * (total - 1)) of `values` filled up with `fill` to `total` entries, fill being no greater than any of them.
 [[nodiscard]] double padded_quantile(std::vector<double> values, std::uint64_t total, double fill, double share);

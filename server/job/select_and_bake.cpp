@@ -56,6 +56,7 @@ class Baker {
     return static_cast<std::uint32_t>(missing.size());
   }
 
+  [[nodiscard]] std::size_t count() const { return baked_.size(); }
   [[nodiscard]] const Impostor& impostor(std::uint32_t candidate) const { return baked_.at(candidate); }
   [[nodiscard]] Impostor take(std::uint32_t candidate) { return std::move(baked_.at(candidate)); }
 
@@ -131,7 +132,9 @@ ImpostorCost corrected(const ImpostorCost& cost, const Correction& by) {
   return {cost.quads * by.quads, cost.texels * by.texels, cost.texel_angle_rad};
 }
 
-constexpr int kBoldRounds = 3;
+// Rounds without caution go on while they are cheap: an impossible budget would bake ever more that is of no use.
+constexpr std::size_t kBoldRounds = 3;    // at least
+constexpr double kCheapBoldShare = 0.01;  // of all bakes so far
 
 // CPVs whose real bound misses the budget although the selection called them met.
 std::uint32_t count_short(const Subdivision& subdivision, const Selection& selection, const Baker& baker, const World& world,
@@ -216,7 +219,7 @@ class Rounds {
     }
     const double cost_share = result_.rounds.size() < kCarefulRounds ? kCostShare : 1.0;
     update(cautious_ ? compare(candidates_.candidates, baker_.sizes(), cost_share) : without_caution());
-    return done || (!cautious_ && bold_rounds_++ == kBoldRounds);
+    return done || (!cautious_ && enough_boldness(outcome.baked));
   }
 
   SelectedImpostors finish(int bound_iterations) {
@@ -235,6 +238,11 @@ class Rounds {
   [[nodiscard]] SelectionBudget limits() const { return {model_.predicted_budget_ms(budget_ms_), result_.page_switch_ms}; }
 
   [[nodiscard]] Correction without_caution() const { return {1.0, 1.0 / sizes_.quads_margin, 1.0 / sizes_.bytes_margin}; }
+
+  // `baked`: in the round just done.
+  [[nodiscard]] bool enough_boldness(std::uint32_t baked) {
+    return bold_rounds_++ >= kBoldRounds && baked > kCheapBoldShare * static_cast<double>(baker_.count());
+  }
 
   // The same problem with what is baked as it is, and the rest as estimated with a correction.
   void update(const Correction& correction) {
@@ -261,7 +269,7 @@ class Rounds {
   // Costs of what is not baked are estimated with caution, so that few bakes leave a region short. Once all else is settled, regions that
   // nothing solves by such costs are tried without, for a few rounds.
   bool cautious_ = true;
-  int bold_rounds_ = 0;
+  std::size_t bold_rounds_ = 0;
   SelectedImpostors result_;
 };
 

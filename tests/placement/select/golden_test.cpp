@@ -39,9 +39,10 @@ TEST(GreedyInstances, SafeOrderIsReproducedLazilyAndPlainly) {
     const auto& safe = vector.at("out").at("greedy").at("safe");
     const auto expected = safe.at("greedy_order").get<std::vector<std::uint32_t>>();
     const TreeOrder order(problem.parent);
+    const Columns columns(problem, order);
     const std::vector<bool> none(problem.candidate_count(), false);
     for (const bool lazy : {true, false}) {
-      GreedyState state(problem, order, {});
+      GreedyState state(problem, columns, {});
       const auto picks = lazy ? pick_lazily(state, none, 1, {}) : pick_plainly(state, none, {});
       EXPECT_EQ(picks.order, expected) << vector.dump();
       EXPECT_EQ(state.all_met(), safe.at("complete").get<bool>());

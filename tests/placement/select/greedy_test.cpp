@@ -12,7 +12,8 @@ namespace {
 
 GreedyPicks picks_of(const SelectionProblem& problem, bool lazy) {
   const TreeOrder order(problem.parent);
-  GreedyState state(problem, order, {});
+  const Columns columns(problem, order);
+  GreedyState state(problem, columns, {});
   const std::vector<bool> none(problem.candidate_count(), false);
   return lazy ? pick_lazily(state, none, 1, {}) : pick_plainly(state, none, {});
 }
@@ -50,7 +51,8 @@ TEST(LazyGreedy, NoScoreEverRises) {
   for (std::uint64_t seed = 1; seed <= 200; ++seed) {
     const auto problem = random_problem(seed, {.nodes = 30, .candidates = 50, .cpvs = 10, .integers = false, .demand = 40.0});
     const TreeOrder order(problem.parent);
-    GreedyState state(problem, order, {});
+    const Columns columns(problem, order);
+    GreedyState state(problem, columns, {});
     std::vector<double> before(problem.candidate_count());
     for (std::uint32_t c = 0; c < before.size(); ++c) before[c] = state.score(c);
     for (const std::uint32_t pick : picks_of(problem, false).order) {
@@ -68,7 +70,8 @@ TEST(GreedyState, LargerClusterReplacesItsPartsAndGainsTheDifference) {
   // Parent 0 with children 1 and 2. The children's impostors gain 2 and 3; the parent's gains 7, so 2 more than both.
   const auto problem = make_problem({-1, 0, 0}, {{1, 1.0, {{0, {2.0}}}}, {2, 1.0, {{0, {3.0}}}}, {0, 4.0, {{0, {7.0}}}}}, {100.0});
   const TreeOrder order(problem.parent);
-  GreedyState state(problem, order, {});
+  const Columns columns(problem, order);
+  GreedyState state(problem, columns, {});
   EXPECT_DOUBLE_EQ(state.score(2), 7.0 / 4.0);
   state.take(0);
   EXPECT_DOUBLE_EQ(state.score(2), 5.0 / 4.0);
