@@ -124,7 +124,7 @@ std::string names_of(const std::vector<std::uint32_t>& objects, const Scene& sce
 }
 
 // How low a budget can be promised, with and without impostors, beside the worst view that was sampled. Promises are bounds, the worst view
-// is an estimate: where no promise comes down to it, impostors are no help there.
+// is an estimate: where no promise comes down to it, that is said first.
 std::string verdict(const Surveyed& job) {
   const ReachSummary& reach = job.reach;
   const std::string without = milliseconds(reach.worst_bound_ms);
@@ -133,8 +133,9 @@ std::string verdict(const Surveyed& job) {
   const std::string promise = "every view can be promised " + milliseconds(reach.all_ms) + ", without them " + without +
                               "; the worst sampled view is estimated at " + milliseconds(worst_ms);
   if (reach.all_ms < worst_ms) return "impostors help: " + promise;
-  return "impostors cannot bring the slowest views down on this target: " + promise +
-         "; what is left is near or light geometry, above all " + names_of(reach.blockers, job.world.scene);
+  const std::string left =
+      reach.blockers.empty() ? "" : "; what is left is near or light geometry, above all " + names_of(reach.blockers, job.world.scene);
+  return "impostors cannot help the slowest views on this target, since no promise comes down to what they take: " + promise + left;
 }
 
 json survey_json(const Surveyed& job) {
@@ -180,12 +181,13 @@ std::string fingerprint(const char* kind, const JobFiles& files, const JobSpec& 
       .dump();
 }
 
-// The selection speaks of the costs it was given: where the rounds ended before real bakes agreed with them, that is said too.
+// The selection speaks of the candidates and costs it was given.
 std::string select_message(const SelectedImpostors& selected) {
-  const std::string& message = selected.selection.summary.message;
+  std::string message = selected.selection.summary.message;
+  if (selected.only_baked && !selected.selection.summary.unmet.empty()) message += " that were baked when the rounds ended";
   const std::uint32_t short_cpvs = selected.rounds.empty() ? 0 : selected.rounds.back().short_cpvs;
-  if (short_cpvs == 0) return message;
-  return message + " by its estimates; " + std::to_string(short_cpvs) + " fell short once baked, when the rounds ended";
+  if (short_cpvs > 0) message += "; " + std::to_string(short_cpvs) + " more fell short once baked";
+  return message;
 }
 
 json select_metrics(const SelectedImpostors& selected, const Placement& placement) {

@@ -42,13 +42,18 @@ struct SizeModel {
   std::uint32_t bakes = 0;
 };
 
+/// What an impostor of this estimated cost may come to, 9 times in 10 at most.
+[[nodiscard]] inline ImpostorCost with_margins(const ImpostorCost& cost, const SizeModel& sizes) {
+  return {cost.quads * sizes.quads_margin, cost.texels * sizes.bytes_margin, cost.texel_angle_rad};
+}
+
 struct Candidate {
   std::uint32_t node = 0;  // of the hierarchy
   ViewCell view_cell;
   std::vector<std::uint32_t> cells;    // served, ascending ids of Subdivision::cells
   std::vector<std::uint32_t> objects;  // of the node, visible from a served cell, ascending
   double bytes = 0.0;                  // estimated texture bytes
-  ImpostorCost cost;                   // estimated
+  ImpostorCost cost;                   // estimated, without margins
 };
 
 struct CandidateSet {

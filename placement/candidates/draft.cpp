@@ -54,9 +54,9 @@ std::optional<Draft> draft_candidate(const DraftContext& context, std::uint32_t 
   Draft draft;
   draft.candidate = {node, *view_cell, cells, std::move(objects), size.bytes, {}};
   // Texels are chosen so that the nearest layer is not magnified from the nearest point of the view cell.
-  draft.candidate.cost = {context.sizes.quads_margin * size.quads, context.sizes.bytes_margin * size.bytes / 4.0,
-                          context.quality.texel_scale / context.camera.focal_px()};
-  draft.cost = context.model.cost(impostor_features_bound(draft.candidate.cost, context.camera));
+  draft.candidate.cost = {size.quads, size.bytes / 4.0, context.quality.texel_scale / context.camera.focal_px()};
+  const ImpostorCost cautious = with_margins(draft.candidate.cost, context.sizes);
+  draft.cost = context.model.cost(impostor_features_bound(cautious, context.camera));
   return draft;
 }
 

@@ -28,7 +28,7 @@ struct DraftContext {
 
 struct Draft {
   Candidate candidate;
-  Cost cost;  // of drawing it
+  Cost cost;  // of drawing it, with the size model's margins
 };
 
 /// Predicted milliseconds in the linear form of a CPV.

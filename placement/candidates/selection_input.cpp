@@ -136,6 +136,11 @@ void set_impostor(SelectionProblem& problem, std::uint32_t candidate, double byt
   problem.cost[candidate * kForms + 1] = drawing.fixed_ms;
 }
 
+void rule_out(SelectionProblem& problem, std::uint32_t candidate) {
+  constexpr double kNever_ms = 1e15;
+  std::fill_n(problem.cost.begin() + static_cast<std::ptrdiff_t>(candidate) * kForms, kForms, kNever_ms);
+}
+
 SelectionProblem make_selection_problem(const Hierarchy& hierarchy, const Subdivision& subdivision, const CandidateSet& candidates,
                                         const TimeModel& model, const Camera& camera, const SelectionBudget& budget, int threads,
                                         const WorkBudget& work) {

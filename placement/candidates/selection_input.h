@@ -18,8 +18,8 @@ struct SelectionBudget {
   double reserve_ms = 0.0;    // kept free in every CPV: switches to the atlas pages
 };
 
-/// With the sizes and costs that the candidates estimate. Where nothing gains by these, no entry is kept. The same result for any number of
-/// threads.
+/// With the sizes and costs that the candidates estimate, without margins. Where nothing gains by these, no entry is kept. The same result
+/// for any number of threads.
 [[nodiscard]] SelectionProblem make_selection_problem(const Hierarchy& hierarchy, const Subdivision& subdivision,
                                                       const CandidateSet& candidates, const TimeModel& model, const Camera& camera,
                                                       const SelectionBudget& budget, int threads, const WorkBudget& work);
@@ -29,5 +29,7 @@ void set_budget(SelectionProblem& problem, const Subdivision& subdivision, const
 /// What has become known of a candidate.
 void set_impostor(SelectionProblem& problem, std::uint32_t candidate, double bytes, const ImpostorCost& cost, const TimeModel& model,
                   const Camera& camera);
+/// The candidate gains nowhere.
+void rule_out(SelectionProblem& problem, std::uint32_t candidate);
 
 }  // namespace standin

@@ -6,7 +6,7 @@
 namespace standin {
 
 GreedyState::GreedyState(const SelectionProblem& problem, const Columns& columns, const std::vector<bool>& ignored)
-    : problem_(problem), columns_(columns), residual_(problem.deficit), rest_(problem.worth) {
+    : problem_(problem), columns_(columns), residual_(problem.deficit), represented_(problem.worth.size(), 0.0) {
   const std::uint32_t stages = problem.stages;
   for (std::uint32_t p = 0; p < problem.cpv_count(); ++p) {
     if (!ignored.empty() && ignored[p]) std::fill_n(residual_.begin() + static_cast<std::ptrdiff_t>(p) * stages, stages, 0.0);
@@ -19,17 +19,18 @@ bool GreedyState::is_met(std::uint32_t cpv) const {
   return std::all_of(residual, residual + problem_.stages, [](double r) { return r <= 0.0; });
 }
 
-// The innermost loop of the selection: with one stage, the common case, it is a subtraction and two comparisons.
+// The innermost loop of the selection: with one stage, the common case, it is two subtractions and two comparisons.
 double GreedyState::score(std::uint32_t candidate) const {
   double sum = 0.0;
   if (problem_.stages == 1) {
     const double* costs = problem_.cost.data() + static_cast<std::size_t>(candidate) * problem_.forms;
     problem_.for_each_listed(candidate, [&](std::uint32_t entry) {
       const std::uint32_t p = problem_.cpv[entry];
-      sum += std::max(std::min(rest_[entry] - costs[problem_.form[p]], residual_[p]), 0.0);
+      const double net_ms = problem_.worth[entry] - costs[problem_.form[p]] - represented_[entry];
+      sum += std::max(std::min(net_ms, residual_[p]), 0.0);
     });
   } else {
-    problem_.for_each_listed(candidate, [&](std::uint32_t entry) { sum += term(candidate, entry); });
+    problem_.for_each_served(candidate, [&](std::uint32_t entry) { sum += term(candidate, entry); });
   }
   return sum / problem_.bytes[candidate];
 }
@@ -46,7 +47,7 @@ double GreedyState::term(std::uint32_t candidate, std::uint32_t entry) const {
 }
 
 void GreedyState::take(std::uint32_t candidate) {
-  problem_.for_each_listed(candidate, [&](std::uint32_t entry) {
+  problem_.for_each_served(candidate, [&](std::uint32_t entry) {
     if (term(candidate, entry) > 0.0) use({candidate, entry});
   });
 }
@@ -58,14 +59,14 @@ void GreedyState::use(const Serving& serving) {
   std::vector<double> nets(stages);
   for (std::uint32_t k = 0; k < stages; ++k) nets[k] = net(serving.candidate, serving.entry, k);
   for (std::uint32_t k = 0; k < stages; ++k) residual_[static_cast<std::size_t>(p) * stages + k] -= nets[k];
-  const auto rest = [&](std::uint32_t entry) { return rest_.begin() + static_cast<std::ptrdiff_t>(entry) * stages; };
+  const auto represented = [&](std::uint32_t entry) { return represented_.begin() + static_cast<std::ptrdiff_t>(entry) * stages; };
   const std::uint32_t node = problem_.node[serving.candidate];
   columns_.for_each_around(p, node, [&](std::uint32_t entry) {
-    for (std::uint32_t k = 0; k < stages; ++k) rest(entry)[k] -= nets[k];
+    for (std::uint32_t k = 0; k < stages; ++k) represented(entry)[k] += nets[k];
   });
   columns_.for_each_below(p, node,
-                          [&](std::uint32_t entry) { std::fill_n(rest(entry), stages, -std::numeric_limits<double>::infinity()); });
-  if (!was_met && is_met(p)) --unmet_;
+                          [&](std::uint32_t entry) { std::fill_n(represented(entry), stages, std::numeric_limits<double>::infinity()); });
+  if (was_met != is_met(p)) was_met ? ++unmet_ : --unmet_;
 }
 
 void GreedyState::represent(std::span<const Serving> antichain) {

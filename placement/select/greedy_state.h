@@ -1,4 +1,4 @@
-// What the greedy knows while it picks: residual deficits, and what each cluster is still worth in each CPV.
+// What the greedy knows while it picks: residual deficits, and what represents each cluster in each CPV.
 //
 // Score of a candidate (thesis Eq. 5.4-5.6, as Wolsey's truncated sum; math.md 5.3):
 //     score = (1 / bytes) sum over CPVs p, stages k of  min(max(net, 0), max(residual, 0)),   net = gain - gain of what it would replace
@@ -6,8 +6,9 @@
 // rise, which is what lets the lazy greedy trust stale scores. That must hold after rounding too, or lazy and plain would differ:
 //   - min(max(net, 0), max(residual, 0)) is monotone in both; the textbook form max(0, r) - max(0, r - net) is not;
 //   - residuals are only ever lowered by net >= 0;
-//   - what represents a cluster is the sum of all nets ever accepted inside it. It is kept as the rest of the cluster's worth, lowered by
-//     each of them as it comes, and a lowered minuend never raises a rounded difference. Summing the active gains afresh could.
+//   - what represents a cluster is the sum of all nets ever accepted inside it, each >= 0, added as they come: such a sum never falls,
+//   rounded
+//     or not. Summing the active gains afresh could.
 #pragma once
 
 #include <cstdint>
@@ -35,15 +36,15 @@ class GreedyState {
  private:
   [[nodiscard]] bool is_met(std::uint32_t cpv) const;
   [[nodiscard]] double net(std::uint32_t candidate, std::uint32_t entry, std::uint32_t stage) const {
-    return rest_[static_cast<std::size_t>(entry) * problem_.stages + stage] - problem_.costs(candidate, problem_.cpv[entry])[stage];
+    return problem_.gain(candidate, entry, stage) - represented_[static_cast<std::size_t>(entry) * problem_.stages + stage];
   }
   [[nodiscard]] double term(std::uint32_t candidate, std::uint32_t entry) const;
   void use(const Serving& serving);
 
   const SelectionProblem& problem_;
   const Columns& columns_;
-  std::vector<double> residual_;  // P * K
-  std::vector<double> rest_;      // per entry * K: worth less the nets accepted inside; minus infinity below an impostor in use
+  std::vector<double> residual_;     // P * K
+  std::vector<double> represented_;  // per entry * K: sum of the nets accepted inside; infinite below an impostor in use
   std::uint32_t unmet_ = 0;
 };
 

@@ -1,15 +1,14 @@
 #include "server/job/select_and_bake.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <optional>
 
 #include "placement/candidates/selection_input.h"
-#include "render/base/error.h"
-#include "render/base/parallel.h"
 #include "render/impostor/atlas.h"
-#include "render/impostor/texture_pyramid.h"
+#include "server/job/baker.h"
 
 namespace standin {
 namespace {
@@ -26,72 +25,6 @@ std::uint32_t pages_for(double bytes) {
   return std::max(1U, static_cast<std::uint32_t>(std::ceil(bytes / (kPacked * page_bytes))));
 }
 
-// What is known of a candidate once it is baked.
-struct BakedSize {
-  double bytes = 0.0;  // > 0
-  ImpostorCost cost;
-};
-
-// What cannot be baked costs more than anything: it gains nowhere, and the next round lets go of it.
-constexpr BakedSize kImpossible{1e15, {1e15, 1e15, 1.0}};
-
-// Keeps what was baked across rounds; candidate ids stay the same throughout.
-class Baker {
- public:
-  Baker(const World& world, const std::vector<Candidate>& candidates)
-      : world_(world), textures_(world.scene), candidates_(candidates), sizes_(candidates.size()) {}
-
-  // Bakes those of `chosen` that are not baked yet. Returns how many.
-  std::uint32_t bake(const std::vector<std::uint32_t>& chosen, const WorkBudget& budget) {
-    std::vector<std::uint32_t> missing;
-    for (const auto id : chosen)
-      if (!baked_.contains(id)) missing.push_back(id);
-    std::vector<std::optional<Impostor>> fresh(missing.size());
-    std::atomic<std::size_t> done{0};
-    parallel_for(missing.size(), world_.threads, budget, [&](std::size_t i) {
-      fresh[i] = try_bake(candidates_[missing[i]], budget);
-      budget.report("bake", static_cast<double>(++done) / static_cast<double>(missing.size()));
-    });
-    for (std::size_t i = 0; i < missing.size(); ++i) keep(missing[i], std::move(fresh[i]));
-    return static_cast<std::uint32_t>(missing.size());
-  }
-
-  [[nodiscard]] std::size_t count() const { return baked_.size(); }
-  [[nodiscard]] const Impostor& impostor(std::uint32_t candidate) const { return baked_.at(candidate); }
-  [[nodiscard]] Impostor take(std::uint32_t candidate) { return std::move(baked_.at(candidate)); }
-
-  [[nodiscard]] double bytes(const std::vector<std::uint32_t>& chosen) const {
-    double sum = 0.0;
-    for (const auto id : chosen) sum += sizes_[id] ? sizes_[id]->bytes : candidates_[id].bytes;
-    return sum;
-  }
-  /// Real bytes and costs, per candidate.
-  [[nodiscard]] const std::vector<std::optional<BakedSize>>& sizes() const { return sizes_; }
-
- private:
-  // Nothing where the sketch was too hopeful: the recorded vertices need more layers than allowed.
-  [[nodiscard]] std::optional<Impostor> try_bake(const Candidate& candidate, const WorkBudget& budget) const {
-    try {
-      return bake_layered(world_.scene, textures_, {candidate.objects, candidate.view_cell}, world_.camera, world_.quality, budget);
-    } catch (const Failure& failure) {
-      if (failure.word() != ErrorWord::kImpostorImpossible) throw;
-      return std::nullopt;
-    }
-  }
-
-  void keep(std::uint32_t id, std::optional<Impostor> impostor) {
-    sizes_[id] = kImpossible;
-    if (impostor) sizes_[id] = BakedSize{std::max(1.0, static_cast<double>(texture_bytes(*impostor))), impostor_cost(*impostor)};
-    baked_.emplace(id, impostor ? std::move(*impostor) : Impostor{});
-  }
-
-  const World& world_;
-  const TexturePyramids textures_;
-  const std::vector<Candidate>& candidates_;
-  std::vector<std::optional<BakedSize>> sizes_;
-  std::map<std::uint32_t, Impostor> baked_;
-};
-
 // How far estimates were off where they could be compared. What is chosen next is what looks cheapest, so the median would be too small
 // (the winner's curse): three of four bakes stay below the factor for bytes. Costs take more caution, 19 of 20, since each that comes out
 // dearer leaves regions short and asks for another round.
@@ -104,9 +37,13 @@ struct Correction {
 constexpr double kBytesShare = 0.75;
 constexpr double kCostShare = 0.95;
 constexpr std::size_t kCarefulRounds = 2;  // after so many, the greatest factor seen
+// Once all else is settled, regions that nothing solves by such costs are tried with ever less caution.
+constexpr std::array<double, 3> kBoldCostShares = {0.95, 0.75, 0.5};
+// That goes on while it is cheap: an impossible budget would bake ever more that is of no use.
+constexpr std::size_t kBoldRounds = 3;    // at least
+constexpr double kCheapBoldShare = 0.01;  // of all bakes so far
 
 double quantile(std::vector<double> ratios, double share) {
-  if (ratios.empty()) return 1.0;
   const auto position = ratios.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(ratios.size() - 1));
   std::nth_element(ratios.begin(), position, ratios.end());
   return *position;
@@ -116,25 +53,23 @@ double pixels_of(const ImpostorCost& cost) {
   return cost.texels * cost.texel_angle_rad * cost.texel_angle_rad;
 }
 
-Correction compare(const std::vector<Candidate>& estimated, const std::vector<std::optional<BakedSize>>& real, double cost_share) {
+// `unknown`: where there is nothing to compare.
+Correction compare(const std::vector<Candidate>& estimated, const std::vector<std::optional<BakedSize>>& real, double cost_share,
+                   const Correction& unknown) {
   std::vector<double> bytes, quads, texels;
   for (std::size_t id = 0; id < estimated.size(); ++id) {
-    if (!real[id] || real[id]->bytes == kImpossible.bytes || !(pixels_of(estimated[id].cost) > 0.0) || !(estimated[id].cost.quads > 0.0))
-      continue;
+    if (!real[id] || !real[id]->possible || !(pixels_of(estimated[id].cost) > 0.0) || !(estimated[id].cost.quads > 0.0)) continue;
     bytes.push_back(real[id]->bytes / estimated[id].bytes);
     quads.push_back(real[id]->cost.quads / estimated[id].cost.quads);
     texels.push_back(pixels_of(real[id]->cost) / pixels_of(estimated[id].cost));
   }
+  if (bytes.empty()) return unknown;
   return {quantile(bytes, kBytesShare), quantile(quads, cost_share), quantile(texels, cost_share)};
 }
 
 ImpostorCost corrected(const ImpostorCost& cost, const Correction& by) {
   return {cost.quads * by.quads, cost.texels * by.texels, cost.texel_angle_rad};
 }
-
-// Rounds without caution go on while they are cheap: an impossible budget would bake ever more that is of no use.
-constexpr std::size_t kBoldRounds = 3;    // at least
-constexpr double kCheapBoldShare = 0.01;  // of all bakes so far
 
 // CPVs whose real bound misses the budget although the selection called them met.
 std::uint32_t count_short(const Subdivision& subdivision, const Selection& selection, const Baker& baker, const World& world,
@@ -182,14 +117,15 @@ class Rounds {
       : world_(world),
         subdivision_(subdivision),
         candidates_(candidates),
-        sizes_(sizes),
         model_(model),
         budget_ms_(budget_ms),
         budget_(budget),
+        margins_{1.0, sizes.quads_margin, sizes.bytes_margin},
         baker_(world, candidates.candidates) {
     result_.atlas_pages = 1;
     result_.page_switch_ms = page_switches_ms(model_, 1);
     problem_ = make_selection_problem(world.hierarchy, subdivision, candidates, model, world.camera, limits(), world.threads, budget);
+    update(margins_);
   }
 
   void select(const JobSpec& spec) {
@@ -202,31 +138,43 @@ class Rounds {
 
   // True when what is selected is baked, and holds, and there is nothing left to try.
   bool bake() {
-    const std::vector<std::uint32_t>& chosen = result_.selection.chosen;
     BakeRound outcome;
-    outcome.estimated_bytes = baker_.bytes(chosen);
-    outcome.baked = baker_.bake(chosen, budget_);
-    outcome.real_bytes = baker_.bytes(chosen);
-    const std::uint32_t pages = pages_for(outcome.real_bytes);
-    outcome.short_cpvs = count_short(subdivision_, result_.selection, baker_, world_, model_, budget_ms_, page_switches_ms(model_, pages));
+    outcome.estimated_bytes = baker_.bytes(result_.selection.chosen);
+    outcome.baked = baker_.bake(result_.selection.chosen, budget_);
+    outcome.real_bytes = baker_.bytes(result_.selection.chosen);
+    reserve_pages();
+    outcome.short_cpvs =
+        count_short(subdivision_, result_.selection, baker_, world_, model_, budget_ms_, page_switches_ms(model_, result_.atlas_pages));
     result_.rounds.push_back(outcome);
-    const bool settled = outcome.short_cpvs == 0 && pages <= result_.atlas_pages;
-    result_.atlas_pages = std::max(pages, result_.atlas_pages);
-    bool done = chosen.empty() || (settled && outcome.baked == 0);
-    if (done && cautious_ && !result_.selection.summary.unmet.empty()) {
-      cautious_ = false;
-      done = false;
-    }
-    const double cost_share = result_.rounds.size() < kCarefulRounds ? kCostShare : 1.0;
-    update(cautious_ ? compare(candidates_.candidates, baker_.sizes(), cost_share) : without_caution());
-    return done || (!cautious_ && enough_boldness(outcome.baked));
+    const bool settled = outcome.baked == 0 && outcome.short_cpvs == 0;
+    const bool done = settled && (result_.selection.summary.unmet.empty() || boldness_ == kBoldCostShares.size());
+    if (settled && !done) ++boldness_;
+    update(compare(candidates_.candidates, baker_.sizes(), cost_share(), boldness_ > 0 ? Correction{} : margins_));
+    return done || (boldness_ > 0 && enough_boldness(outcome.baked));
+  }
+
+  [[nodiscard]] bool is_short() const { return result_.rounds.back().short_cpvs > 0; }
+
+  // The best that can be done with what is baked: where the rounds end before real bakes agree with the estimates.
+  void select_among_baked(const JobSpec& spec) {
+    std::vector<Shortfall> short_of_all = std::move(result_.selection.summary.unmet);
+    do {
+      update(Correction{});
+      for (std::uint32_t id = 0; id < candidates_.candidates.size(); ++id)
+        if (!baker_.sizes()[id]) rule_out(problem_, id);
+      select(spec);
+    } while (reserve_pages());
+    result_.only_baked = true;
+    keep_residuals(short_of_all);
   }
 
   SelectedImpostors finish(int bound_iterations) {
     SelectionSummary& summary = result_.selection.summary;
     summary.bytes = baker_.bytes(result_.selection.chosen);
     if (bound_iterations > 0) {
-      update(without_caution());
+      update(Correction{});
+      for (const Shortfall& shortfall : summary.unmet)
+        problem_.deficit[shortfall.cpv] = 0.0;  // as the selection, it spends nothing on them
       const SelectionConfig config{.bound_iterations = bound_iterations, .threads = world_.threads};
       summary.lower_bound_bytes = memory_lower_bound(problem_, summary.bytes, config, budget_);
     }
@@ -237,7 +185,28 @@ class Rounds {
  private:
   [[nodiscard]] SelectionBudget limits() const { return {model_.predicted_budget_ms(budget_ms_), result_.page_switch_ms}; }
 
-  [[nodiscard]] Correction without_caution() const { return {1.0, 1.0 / sizes_.quads_margin, 1.0 / sizes_.bytes_margin}; }
+  // Whether what is chosen fills more atlas pages than any choice so far.
+  bool reserve_pages() {
+    const std::uint32_t pages = pages_for(baker_.bytes(result_.selection.chosen));
+    const bool more = pages > result_.atlas_pages;
+    result_.atlas_pages = std::max(pages, result_.atlas_pages);
+    return more;
+  }
+
+  // A region that no candidates could solve is short by what the best of all leave, not by what those leave that happen to be baked.
+  void keep_residuals(const std::vector<Shortfall>& short_of_all) {
+    std::map<std::uint32_t, double> residual;
+    for (const Shortfall& shortfall : short_of_all) residual[shortfall.cpv] = shortfall.residual;
+    for (Shortfall& shortfall : result_.selection.summary.unmet)
+      if (const auto known = residual.find(shortfall.cpv); known != residual.end())
+        shortfall.residual = std::min(shortfall.residual, known->second);
+  }
+
+  // Costs of what is not baked are estimated with caution, so that few bakes leave a region short: the share of bakes that stay below.
+  [[nodiscard]] double cost_share() const {
+    if (boldness_ > 0) return kBoldCostShares[boldness_ - 1];
+    return result_.rounds.size() < kCarefulRounds ? kCostShare : 1.0;
+  }
 
   // `baked`: in the round just done.
   [[nodiscard]] bool enough_boldness(std::uint32_t baked) {
@@ -250,25 +219,26 @@ class Rounds {
     set_budget(problem_, subdivision_, limits());
     for (std::uint32_t id = 0; id < candidates_.candidates.size(); ++id) {
       const Candidate& estimate = candidates_.candidates[id];
-      if (const auto& real = baker_.sizes()[id])
+      const auto& real = baker_.sizes()[id];
+      if (!real)
+        set_impostor(problem_, id, correction.bytes * estimate.bytes, corrected(estimate.cost, correction), model_, world_.camera);
+      else if (real->possible)
         set_impostor(problem_, id, real->bytes, real->cost, model_, world_.camera);
       else
-        set_impostor(problem_, id, correction.bytes * estimate.bytes, corrected(estimate.cost, correction), model_, world_.camera);
+        rule_out(problem_, id);
     }
   }
 
   const World& world_;
   const Subdivision& subdivision_;
   const CandidateSet& candidates_;
-  const SizeModel& sizes_;
   const TimeModel& model_;
   double budget_ms_;
   const WorkBudget& budget_;
+  const Correction margins_;
   Baker baker_;
   SelectionProblem problem_;
-  // Costs of what is not baked are estimated with caution, so that few bakes leave a region short. Once all else is settled, regions that
-  // nothing solves by such costs are tried without, for a few rounds.
-  bool cautious_ = true;
+  std::size_t boldness_ = 0;  // how often caution was given up
   std::size_t bold_rounds_ = 0;
   SelectedImpostors result_;
 };
@@ -282,6 +252,10 @@ SelectedImpostors select_and_bake(const World& world, const Subdivision& subdivi
   for (int round = 0; round < spec.bake_rounds; ++round) {
     clock.run("select", [&] { rounds.select(spec); });
     if (clock.run("bake", [&] { return rounds.bake(); })) break;
+  }
+  if (rounds.is_short()) {
+    clock.run("select", [&] { rounds.select_among_baked(spec); });
+    clock.run("bake", [&] { return rounds.bake(); });
   }
   return clock.run("select", [&] { return rounds.finish(spec.bound_iterations); });
 }

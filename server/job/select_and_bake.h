@@ -2,8 +2,9 @@
 //
 // Selection works on estimated bytes and times. What it chose is baked, the real costs go back, once per impostor, and the selection goes
 // on from what it holds: CPVs that fell short get further candidates, and impostors that real bytes make redundant go. At most
-// `bake_rounds` rounds. The thesis bakes at each greedy step (5.7.3) for exact gains: but then bakes cannot run side by side, and most of
-// what the greedy picks along the way is deleted again in the end (a third to a half, measured).
+// `bake_rounds` rounds; if some CPVs are short even then, a last selection among what is baked solves all that it can. The thesis bakes at
+// each greedy step (5.7.3) for exact gains: but then bakes cannot run side by side, and most of what the greedy picks along the way is
+// deleted again in the end (a third to a half, measured).
 #pragma once
 
 #include <vector>
@@ -30,6 +31,7 @@ struct SelectedImpostors {
   std::vector<BakedCandidate> baked;                 // the same order
   std::vector<std::vector<std::uint32_t>> assigned;  // per CPV: indices into `impostors`, ascending
   std::vector<BakeRound> rounds;
+  bool only_baked = false;  // the last selection was among what is baked
   std::uint32_t atlas_pages = 0;
   double page_switch_ms = 0.0;  // all pages, as every region that draws an impostor is charged
 };

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdio>
+#include <functional>
 
 #include "tests/support/selection_instances.h"
 
@@ -18,11 +19,13 @@ GreedyPicks picks_of(const SelectionProblem& problem, bool lazy) {
   return lazy ? pick_lazily(state, none, 1, {}) : pick_plainly(state, none, {});
 }
 
-void expect_same_picks(const char* name, const RandomShape& shape, std::uint64_t seeds) {
+using Instances = std::function<SelectionProblem(std::uint64_t seed)>;
+
+void expect_same_picks(const char* name, const Instances& instances, std::uint64_t seeds) {
   std::uint64_t lazy_evaluations = 0;
   std::uint64_t plain_evaluations = 0;
   for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
-    const auto problem = random_problem(seed, shape);
+    const auto problem = instances(seed);
     const auto lazy = picks_of(problem, true);
     const auto plain = picks_of(problem, false);
     ASSERT_EQ(lazy.order, plain.order) << name << ", seed " << seed;
@@ -32,6 +35,11 @@ void expect_same_picks(const char* name, const RandomShape& shape, std::uint64_t
   EXPECT_LT(lazy_evaluations, plain_evaluations);
   std::printf("%s: %lu instances, %lu against %lu evaluations\n", name, static_cast<unsigned long>(seeds),
               static_cast<unsigned long>(lazy_evaluations), static_cast<unsigned long>(plain_evaluations));
+}
+
+void expect_same_picks(const char* name, const RandomShape& shape, std::uint64_t seeds) {
+  expect_same_picks(
+      name, [&](std::uint64_t seed) { return random_problem(seed, shape); }, seeds);
 }
 
 TEST(LazyGreedy, EqualsPlainWithRealGains) {
@@ -47,9 +55,15 @@ TEST(LazyGreedy, EqualsPlainWithNegativeGains) {
   expect_same_picks("negative", {.nodes = 20, .candidates = 40, .cpvs = 8, .stages = 2, .negative = 0.4, .demand = 40.0}, 200);
 }
 
-TEST(LazyGreedy, NoScoreEverRises) {
+TEST(LazyGreedy, EqualsPlainWithWorthsAndCosts) {
+  for (const std::uint32_t stages : {1U, 2U})
+    expect_same_picks(
+        "factored", [=](std::uint64_t seed) { return random_factored_problem(seed, {.stages = stages}); }, 200);
+}
+
+void expect_no_score_rises(const Instances& instances) {
   for (std::uint64_t seed = 1; seed <= 200; ++seed) {
-    const auto problem = random_problem(seed, {.nodes = 30, .candidates = 50, .cpvs = 10, .integers = false, .demand = 40.0});
+    const auto problem = instances(seed);
     const TreeOrder order(problem.parent);
     const Columns columns(problem, order);
     GreedyState state(problem, columns, {});
@@ -64,6 +78,70 @@ TEST(LazyGreedy, NoScoreEverRises) {
       }
     }
   }
+}
+
+TEST(LazyGreedy, NoScoreEverRises) {
+  expect_no_score_rises([](std::uint64_t seed) {
+    return random_problem(seed, {.nodes = 30, .candidates = 50, .cpvs = 10, .integers = false, .demand = 40.0});
+  });
+  for (const std::uint32_t stages : {1U, 2U})
+    expect_no_score_rises([=](std::uint64_t seed) { return random_factored_problem(seed, {.stages = stages}); });
+}
+
+// One cell, one region: cluster 0 with parts 1 and 2 is worth 9 = 4 + 5. Candidates 0 and 1 stand for cluster 1, 2 for the whole.
+SelectionProblem shared_blocks(double deficit) {
+  SelectionProblem problem;
+  problem.parent = {-1, 0, 0};
+  problem.deficit = {deficit};
+  problem.form = {0};
+  problem.block_offset = {0, 1, 2};
+  problem.cpv = {0, 0};
+  problem.worth = {4.0, 9.0};
+  problem.node = {1, 1, 0};
+  problem.bytes = {1.0, 1.0, 2.0};
+  problem.cost = {0.3, 0.3, 0.7};
+  problem.run_offset = {0, 1, 2, 3};
+  problem.runs = {{0, 1}, {0, 1}, {1, 2}};
+  return problem;
+}
+
+TEST(GreedyState, EquallyDearImpostorOfTheSameClusterGainsExactlyNothing) {
+  const auto problem = shared_blocks(100.0);
+  const TreeOrder order(problem.parent);
+  const Columns columns(problem, order);
+  GreedyState state(problem, columns, {});
+  EXPECT_DOUBLE_EQ(state.score(1), 3.7);
+  state.take(0);
+  EXPECT_EQ(state.score(1), 0.0);
+  EXPECT_DOUBLE_EQ(state.score(2), (9.0 - 0.7 - 3.7) / 2.0);
+}
+
+TEST(GreedyState, WhatIsRepresentedAlreadyIsNotGainedAgain) {
+  const auto problem = shared_blocks(5.0);
+  const TreeOrder order(problem.parent);
+  const Columns columns(problem, order);
+  GreedyState state(problem, columns, {});
+  const Serving part{0, 0};
+  state.represent({&part, 1});
+  EXPECT_FALSE(state.all_met());
+  EXPECT_DOUBLE_EQ(state.score(2), (5.0 - 3.7) / 2.0);  // all that is missing
+  state.take(2);
+  EXPECT_TRUE(state.all_met());
+  EXPECT_EQ(state.score(1), 0.0);  // its ancestor is in use
+}
+
+TEST(GreedyState, AMemberThatCostsMayLeaveARegionUnmetAgain) {
+  // Two stages; the second member gains in one and loses in the other.
+  const auto problem =
+      make_problem({-1, -1}, {{0, 1.0, {{0, {2.0, 2.0}}}}, {1, 1.0, {{0, {3.0, -1.0}}}}, {0, 1.0, {{0, {4.0, 4.0}}}}}, {2.0, 2.0}, 2);
+  const TreeOrder order(problem.parent);
+  const Columns columns(problem, order);
+  GreedyState state(problem, columns, {});
+  const std::vector<Serving> antichain = {{0, 0}, {1, 1}};
+  state.represent(antichain);
+  EXPECT_FALSE(state.all_met());
+  state.take(2);
+  EXPECT_TRUE(state.all_met());
 }
 
 TEST(GreedyState, LargerClusterReplacesItsPartsAndGainsTheDifference) {
