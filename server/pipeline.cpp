@@ -33,6 +33,8 @@ namespace {
 
 using nlohmann::json;
 
+// Impostors that lower the highest bound by less than this are no help.
+constexpr double kHelpfulShare = 0.98;
 constexpr const char* kNoProblemViews = "no problem views: every region's bound is within the budget";
 
 struct Surveyed {
@@ -133,9 +135,11 @@ std::string verdict(const Surveyed& job) {
   const std::string promise = "every view can be promised " + milliseconds(reach.all_ms) + ", without them " + without +
                               "; the worst sampled view is estimated at " + milliseconds(worst_ms);
   if (reach.all_ms < worst_ms) return "impostors help: " + promise;
-  const std::string left =
-      reach.blockers.empty() ? "" : "; what is left is near or light geometry, above all " + names_of(reach.blockers, job.world.scene);
-  return "impostors cannot help the slowest views on this target, since no promise comes down to what they take: " + promise + left;
+  const std::string blockers = names_of(reach.blockers, job.world.scene);
+  const std::string why = blockers.empty() ? "" : "; what is left is near or light geometry, above all " + blockers;
+  if (reach.all_ms < kHelpfulShare * reach.worst_bound_ms)
+    return "impostors lower what can be promised, yet no promise comes down to the slowest views on this target: " + promise + why;
+  return "impostors cannot help the slowest views on this target: " + promise + why;
 }
 
 json survey_json(const Surveyed& job) {
