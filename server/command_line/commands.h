@@ -25,6 +25,7 @@ struct CommandArguments {
   std::string view_cell;  // bake: shaft:... or box:...
   std::uint32_t city_objects = 5287;
   std::uint64_t city_triangles = 10'400'000;
+  std::uint32_t judged_views = 500;  // verify
   bool json = false;
   bool explain = false;
 };

@@ -154,6 +154,9 @@ void add_result_commands(Grammar& grammar) {
   }
   check.spec_flags({"threads", "scene.texture_folders"});
   verify.app.add_option("--views", grammar.parsed.context.spec.verify_views, "views to render")->check(CLI::Range(1, 100'000));
+  verify.app.add_option("--judged-views", verify.arguments().judged_views, "views inside view cells to judge by rays")
+      ->check(CLI::Range(0, 100'000))
+      ->capture_default_str();
   verify.spec_flags({"seed", "threads", "device", "scene.texture_folders"});
   check.run(check_command);
   verify.run(verify_command);

@@ -110,7 +110,7 @@ int verify_command(const CommandContext& context) {
                           file.spec.budget_ms, alpha_rad,     survey.at("worst_frame_ms")};
   VerifyOptions options;
   options.views = context.spec.verify_views;
-  options.judged_views = (options.views + 1) / 2;
+  options.judged_views = context.arguments.judged_views;
   options.seed = context.spec.seed + 1;
   options.threads = thread_count(context.spec);
   options.pictures = 0;

@@ -15,9 +15,9 @@
 namespace standin {
 
 /// Members of metrics.json:
-///   unsolved           the worst 200 by lowest_budget_ms: region, bounds, residual of the best set of disjoint candidates, the lowest
-///   budget
-///                      that would do, and the dearest objects still drawn ("blocking")
+///   unsolved           the worst 200 by lowest_budget_ms: region, bounds, residual of the best set of disjoint candidates (of those that
+///                      were baked, where the rounds ended too early), the lowest budget that would do, and the dearest objects still
+///                      drawn ("blocking")
 ///   unsolved_by_cell   per leaf cell (before halving): regions, and the lowest budget that would do for all of them
 ///   unsolved_by_object per object that is the dearest one still drawn somewhere: regions, and its milliseconds in the worst of them
 [[nodiscard]] nlohmann::json unsolved_json(const World& world, const Subdivision& subdivision, const Placement& placement,

@@ -49,12 +49,13 @@ void judge_impostors(const VerifyInput& input, const GlbQuads& glb, const Verify
   }
   const std::size_t wanted = std::max(1U, options.judged_views / kViewsPerImpostor);
   const std::vector<std::uint32_t> chosen = evenly_spaced(by_layer_count(impostors), wanted);
-  const auto views_each = std::max(1U, options.judged_views / static_cast<std::uint32_t>(chosen.size()));
-  for (const std::uint32_t id : chosen) {
+  for (std::size_t i = 0; i < chosen.size(); ++i) {
     budget.check();
     budget.report("verify: rays", static_cast<double>(result.judged_views) / options.judged_views);
-    const auto views =
-        sample_cell_views(impostors[id].view_cell, bounds_of(input.scene, impostors[id].objects), views_each, options.seed + id);
+    const std::uint32_t id = chosen[i];
+    const auto count =
+        static_cast<std::uint32_t>(options.judged_views * (i + 1) / chosen.size() - options.judged_views * i / chosen.size());
+    const auto views = sample_cell_views(impostors[id].view_cell, bounds_of(input.scene, impostors[id].objects), count, options.seed + id);
     const ImpostorJudgement judgement =
         judge_impostor(input.scene, glb, judged(impostors[id], id, input.alpha_rad), input.camera, views, options.threads, budget);
     result.judged_views += judgement.views;
