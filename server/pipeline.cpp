@@ -142,6 +142,12 @@ std::string verdict(const Surveyed& job) {
   return "impostors cannot help the slowest views on this target: " + promise + why;
 }
 
+std::vector<View> slow_views(const Survey& survey) {
+  std::vector<View> views;
+  for (const SlowView& slow : survey.worst) views.push_back(slow.surveyed.view);
+  return views;
+}
+
 json survey_json(const Surveyed& job) {
   const Survey& survey = job.survey;
   const auto if_known = [&](double reachable_ms) { return job.reach.known ? json(reachable_ms) : json(); };
@@ -150,6 +156,7 @@ json survey_json(const Surveyed& job) {
           {"p90_frame_ms", survey.p90_ms},
           {"p99_frame_ms", survey.p99_ms},
           {"worst_bound_ms", job.reach.worst_bound_ms},
+          {"worst_views", slow_views_json(survey.worst)},
           {"bound_over_sampled_p50", survey.looseness_p50},
           {"bound_over_sampled_max", survey.looseness_max},
           {"reachable_all_ms", if_known(job.reach.all_ms)},
@@ -291,8 +298,8 @@ void place_impostors(const Surveyed& job, const JobSpec& spec, Placed& placed, S
 VerifyResult verify(const Surveyed& job, const Placed& placed, const JobSpec& spec, const WorkBudget& budget) {
   const World& world = job.world;
   const double alpha_rad = world.quality.alpha_scale * world.camera.pixel_angle_rad();
-  const VerifyInput input{world.scene, job.target,     placed.placement, world.view_space,         world.camera,
-                          placed.glb,  spec.budget_ms, alpha_rad,        job.survey.worst_frame_ms};
+  const VerifyInput input{world.scene, job.target,     placed.placement, world.view_space,          world.camera,
+                          placed.glb,  spec.budget_ms, alpha_rad,        job.survey.worst_frame_ms, slow_views(job.survey)};
   VerifyOptions options;
   options.views = spec.verify_views;
   options.seed = spec.seed + 1;  // not the views the survey saw

@@ -10,6 +10,7 @@
 #include "render/scene/load.h"
 #include "server/command_line/commands.h"
 #include "server/files/placement_json.h"
+#include "server/job/metrics.h"
 #include "server/job/target_device.h"
 #include "server/job/world.h"
 #include "server/pipeline.h"
@@ -105,9 +106,16 @@ int verify_command(const CommandContext& context) {
   const std::string glb = read_file(fs::path(context.arguments.folder) / "impostors.glb");
   const double alpha_rad = file.spec.alpha_scale * file.camera.pixel_angle_rad();
   const json survey = read_json(fs::path(context.arguments.folder) / "metrics.json").at("survey");
-  const VerifyInput input{opened.scene,        opened.target, file.placement,
-                          file.view_space,     file.camera,   glb,
-                          file.spec.budget_ms, alpha_rad,     survey.at("worst_frame_ms")};
+  const VerifyInput input{opened.scene,
+                          opened.target,
+                          file.placement,
+                          file.view_space,
+                          file.camera,
+                          glb,
+                          file.spec.budget_ms,
+                          alpha_rad,
+                          survey.at("worst_frame_ms"),
+                          slow_views_from_json(survey.value("worst_views", json::array()))};
   VerifyOptions options;
   options.views = context.spec.verify_views;
   options.judged_views = context.arguments.judged_views;

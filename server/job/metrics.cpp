@@ -115,6 +115,24 @@ json gpu_bytes_json(const std::vector<Texture>& pages) {
   return {{"bc1", 8 * blocks}, {"bc3", 16 * blocks}, {"bc7", 16 * blocks}, {"etc2_rgb8a1", 8 * blocks}, {"etc2_rgba8", 16 * blocks}};
 }
 
+json slow_views_json(const std::vector<SlowView>& slow) {
+  json list = json::array();
+  for (const SlowView& one : slow) {
+    const View& view = one.surveyed.view;
+    list.push_back({{"position", {view.position.x, view.position.y, view.position.z}},
+                    {"direction", {view.direction.x, view.direction.y, view.direction.z}},
+                    {"frame_ms", one.surveyed.predicted_ms}});
+  }
+  return list;
+}
+
+std::vector<View> slow_views_from_json(const json& worst_views) {
+  const auto vec3 = [](const json& xyz) { return Vec3(xyz.at(0).get<double>(), xyz.at(1).get<double>(), xyz.at(2).get<double>()); };
+  std::vector<View> views;
+  for (const json& one : worst_views) views.push_back({vec3(one.at("position")), vec3(one.at("direction"))});
+  return views;
+}
+
 std::uint64_t peak_rss_bytes() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);

@@ -19,6 +19,18 @@ DrawList draw_list(const Placement& placement, const Lookup& lookup, const Scene
   return {std::move(content.objects), std::move(content.impostors)};
 }
 
+/// A quarter of them at most are the survey's: where it saw the slowest frames, frames must be as slow as it said.
+std::vector<VerifiedView> choose_views(const VerifyInput& input, const VerifyOptions& options) {
+  const auto surveyed = std::min(static_cast<std::uint32_t>(input.surveyed_views.size()), options.views / 4);
+  std::vector<VerifiedView> views = sample_views(input.placement, input.view_space, options.views - surveyed, options.seed);
+  for (std::uint32_t i = 0; i < surveyed; ++i) {
+    views.emplace_back();
+    views.back().view = input.surveyed_views[i];
+    views.back().origin = ViewOrigin::kSurveyed;
+  }
+  return views;
+}
+
 /// Fills in the views' look-ups and says what each draws.
 std::vector<FramePair> look_up(const VerifyInput& input, const WorkBudget& budget, std::vector<VerifiedView>& views) {
   const PlacementIndex index(input.placement);
@@ -91,6 +103,21 @@ void count_over_budget(double budget_ms, VerifyResult& result) {
   }
 }
 
+std::optional<double> measured_coverage(const TimeModel& model, const std::vector<VerifiedView>& views) {
+  std::uint32_t timed = 0;
+  std::uint32_t kept = 0;
+  const auto count = [&](double estimated_ms, const std::optional<double>& measured_ms) {
+    if (!measured_ms) return;
+    ++timed;
+    if (*measured_ms <= model.bound_ms(estimated_ms)) ++kept;
+  };
+  for (const auto& view : views) {
+    count(view.estimated_before_ms, view.measured_before_ms);
+    count(view.estimated_after_ms, view.measured_after_ms);
+  }
+  return timed > 0 ? std::optional(static_cast<double>(kept) / timed) : std::nullopt;
+}
+
 void note_untimed(bool timed, const VerifyOptions& options, VerifyResult& result) {
   if (!timed)
     result.left_out.emplace_back(
@@ -113,7 +140,7 @@ VerifyResult verify_placement(const VerifyInput& input, Context& context, const 
   const GlbQuads glb = read_glb_quads(input.impostor_glb);
   const ImpostorSet shipped = shipped_impostors(glb, input.placement);
   VerifyResult result;
-  result.views = sample_views(input.placement, input.view_space, options.views, options.seed);
+  result.views = choose_views(input, options);
   const std::vector<FramePair> frames = look_up(input, budget, result.views);
   estimate(input, shipped, frames, budget, result.views);
 
@@ -126,6 +153,7 @@ VerifyResult verify_placement(const VerifyInput& input, Context& context, const 
   }
   note_untimed(static_cast<bool>(start_timing), options, result);
   count_over_budget(input.budget_ms, result);
+  result.measured_coverage = measured_coverage(input.target.model, result.views);
   compare_with_survey(input.surveyed_worst_ms, result);
   for (const auto view : worst_views(result.views, options.pictures))
     result.pictures.push_back(take_pictures(renderer, view, result.views[view].view, frames[view]));

@@ -2,8 +2,8 @@
 // placement/runtime, estimated and measured.
 //
 // Random views and adversarial ones (cell corners, interval borders, the views whose bound the optimizer left closest to the budget, a
-// camera path through the view space). "Before" draws the visible originals, "after" what the placement says. Times are measured only where
-// the device is the target's; elsewhere they are left out.
+// camera path through the view space, the slowest views that the survey found). "Before" draws the visible originals, "after" what the
+// placement says. Times are measured only where the device is the target's; elsewhere they are left out.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +21,7 @@
 
 namespace standin {
 
-enum class ViewOrigin { kRandom, kCorner, kBorder, kTight, kPath };
+enum class ViewOrigin { kRandom, kCorner, kBorder, kTight, kPath, kSurveyed };
 
 struct VerifiedView {
   View view;
@@ -58,6 +58,8 @@ struct VerifyResult {
   std::uint32_t over_budget_estimated = 0;
   std::uint32_t over_budget_measured = 0;
   double worst_over_budget = 0.0;  // max of measured_after / budget
+  // Share of the timed frames, before and after, that kept the bound of their estimate: to be held against the target's coverage.
+  std::optional<double> measured_coverage;
   std::uint32_t judged_views = 0;  // views judged by rays, and what they found
   std::uint64_t gap_pixels = 0;
   double max_parallax_ratio = 0.0;
@@ -78,7 +80,8 @@ struct VerifyInput {
   const std::string& impostor_glb;
   double budget_ms;
   double alpha_rad;
-  double surveyed_worst_ms = 0.0;  // survey.worst_frame_ms; 0: not known
+  double surveyed_worst_ms = 0.0;    // survey.worst_frame_ms; 0: not known
+  std::vector<View> surveyed_views = {};  // the slowest that the survey found
 };
 
 /// Whoever times holds the machine-wide lock for as long; a test's fake timer needs none.

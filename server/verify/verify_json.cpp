@@ -20,9 +20,11 @@ const char* origin_name(ViewOrigin origin) {
     case ViewOrigin::kTight:
       return "tight";
     case ViewOrigin::kPath:
+      return "path";
+    case ViewOrigin::kSurveyed:
       break;
   }
-  return "path";
+  return "surveyed";
 }
 
 json optional_number(const std::optional<double>& value) {
@@ -67,6 +69,7 @@ json verify_json(const VerifyResult& result) {
           {"worst_over_budget", was_measured ? json(result.worst_over_budget) : json()},
           {"frame_ms_before", percentiles(measured(result, &VerifiedView::measured_before_ms))},
           {"frame_ms_after", percentiles(measured(result, &VerifiedView::measured_after_ms))},
+          {"measured_coverage", optional_number(result.measured_coverage)},
           {"worst_before_over_surveyed", optional_number(result.worst_before_over_surveyed)},
           {"left_out", result.left_out},
           {"frames", std::move(frames)}};

@@ -20,6 +20,9 @@ test("survey says how low the budget may go, and place gets there", () => {
   expectExit(0, "survey", city, ...smallJob, "-o", join(fixture, "survey"));
   const { survey } = readJson(join(fixture, "survey/metrics.json"));
   assert.ok(survey.reachable_all_ms < survey.worst_bound_ms, "impostors help this city");
+  const slowest = survey.worst_views.map((view) => view.frame_ms);
+  assert.deepEqual(slowest, [...slowest].sort((a, b) => b - a), "slowest first");
+  assert.equal(slowest[0], survey.worst_frame_ms);
   assert.ok(survey.reachable_p90_ms <= survey.reachable_p99_ms && survey.reachable_p99_ms <= survey.reachable_all_ms);
 
   const budget = (1.05 * survey.reachable_all_ms).toFixed(3);

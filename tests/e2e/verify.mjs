@@ -14,6 +14,10 @@ test("times are null and named as left out, all else is judged", () => {
   const { verify, image } = readJson(join(copy, "verify.json"));
   assert.equal(verify.views, 12);
   assert.equal(verify.over_budget_measured, null);
+  assert.equal(verify.measured_coverage, null);
+  const { worst_views } = readJson(join(copy, "metrics.json")).survey;
+  const surveyed = verify.frames.filter((frame) => frame.origin === "surveyed");
+  assert.deepEqual(surveyed.map((frame) => frame.position), worst_views.slice(0, 3).map((view) => view.position), "a quarter at most");
   for (const times of [verify.frame_ms_before, verify.frame_ms_after]) assert.deepEqual(times, { p50: null, p99: null, max: null });
   assert.ok(verify.left_out.some((reason) => /frame times.*(device|renderer)/.test(reason)), JSON.stringify(verify.left_out));
   assert.equal(verify.over_budget_estimated, 0);

@@ -3,7 +3,7 @@
 function verdict({ metrics }) {
   const cpv = metrics.cpv || {}, verify = metrics.verify || {};
   const budget = milliseconds(metrics.budget_ms);
-  if (!isNumber(metrics.budget_ms)) return ["plain", "Survey", "how long frames take, and why; no budget was given."];
+  if (!isNumber(metrics.budget_ms)) return ["plain", "Survey", `${field(metrics, "survey.verdict") || "how long frames take, and why; no budget was given"}.`];
   if (!isNumber(cpv.solved)) return ["plain", "Survey", isNumber(cpv.count) ? `${count(cpv.count)} regions may exceed ${budget}.` : `Frame times against a budget of ${budget}.`];
   if (cpv.count === 0) return ["good", "Nothing to do", `no view exceeds ${budget}, so no impostor is needed.`];
   if (cpv.unsolved > 0) return ["bad", "Budget not met everywhere", `${count(cpv.unsolved)} of ${count(cpv.count)} slow regions cannot be brought under ${budget}; the rest is solved.`];

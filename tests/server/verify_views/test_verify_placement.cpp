@@ -93,6 +93,33 @@ TEST_F(VerifyPlacement, ComparesTheWorstFrameWithTheSurvey) {
   EXPECT_FALSE(verify(100.0, {.views = 4}).worst_before_over_surveyed);
 }
 
+TEST_F(VerifyPlacement, TheSurveysSlowestViewsAreAmongThem) {
+  VerifyInput input{world.scene, target, world.placement, world.view_space, world.camera, world.glb, 100.0, 1e-3};
+  for (int i = 0; i < 5; ++i) input.surveyed_views.push_back({Vec3(0.25 * i, 1.0, 0.0), Vec3(0.0, 0.0, -1.0)});
+  const auto surveyed = [&](std::uint32_t count) {
+    std::vector<Vec3> positions;
+    const VerifyResult result = verify_placement(input, *context, count_triangles, {.views = count}, {});
+    EXPECT_EQ(result.views.size(), count);
+    for (const auto& view : result.views)
+      if (view.origin == ViewOrigin::kSurveyed) positions.push_back(view.view.position);
+    return positions;
+  };
+  EXPECT_EQ(surveyed(64).size(), 5U);
+  EXPECT_EQ(surveyed(12), (std::vector<Vec3>{Vec3(0.0, 1.0, 0.0), Vec3(0.25, 1.0, 0.0), Vec3(0.5, 1.0, 0.0)})) << "a quarter at most";
+}
+
+TEST_F(VerifyPlacement, CoverageIsTheShareOfFramesWithinTheirBound) {
+  EXPECT_EQ(verify(100.0, {.views = 64}).measured_coverage, 1.0);
+  const auto hundredfold = [](Context&) -> TimingSession {
+    return {nullptr, make_fake_frame_timer([](const FrameCounts& counts) { return 100.0 * static_cast<double>(counts.triangles); })};
+  };
+  const VerifyResult slow = verify(100.0, {.views = 64}, hundredfold);
+  int empty_frames = 0;
+  for (const auto& view : slow.views) empty_frames += (*view.measured_before_ms == 0.0 ? 1 : 0) + (*view.measured_after_ms == 0.0 ? 1 : 0);
+  EXPECT_EQ(slow.measured_coverage, empty_frames / 128.0);
+  EXPECT_LT(*slow.measured_coverage, 0.9);
+}
+
 TEST_F(VerifyPlacement, TheSlowestEstimatesAreTimedBefore) {
   VerifyOptions options{.views = 64, .measured_before = 16};
   const VerifyResult result = verify(100.0, options);
