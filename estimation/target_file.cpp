@@ -129,11 +129,11 @@ Target read_target(const std::filesystem::path& file) {
   target.id = root.text("id");
   target.model = read_model(root.object("model"));
   const Reader machine = root.object("machine");
-  target.device = machine.text("device");
-  target.renderer = machine.text("renderer");
-  target.gl_version = machine.text("gl_version");
-  target.processor = machine.text("processor");
-  target.reference_ms = machine.number("reference_ms");
+  target.machine.device = machine.text("device");
+  target.machine.renderer = machine.text("renderer");
+  target.machine.gl_version = machine.text("gl_version");
+  target.machine.processor = machine.text("processor");
+  target.machine.reference_ms = machine.number("reference_ms");
   const Reader quality = root.object("quality");
   target.samples = static_cast<std::uint32_t>(std::min(quality.number("samples"), 4294967295.0));
   target.median_error = quality.number("median_error");
@@ -148,11 +148,11 @@ void write_target(const Target& target, const std::filesystem::path& file) {
                      {"version", kVersion},
                      {"id", target.id},
                      {"machine",
-                      {{"device", target.device},
-                       {"renderer", target.renderer},
-                       {"gl_version", target.gl_version},
-                       {"processor", target.processor},
-                       {"reference_ms", target.reference_ms}}},
+                      {{"device", target.machine.device},
+                       {"renderer", target.machine.renderer},
+                       {"gl_version", target.machine.gl_version},
+                       {"processor", target.machine.processor},
+                       {"reference_ms", target.machine.reference_ms}}},
                      {"model", model_json(target.model)},
                      {"quality",
                       {{"samples", target.samples},

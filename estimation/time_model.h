@@ -48,16 +48,21 @@ struct TimeModel {
   [[nodiscard]] double predicted_budget_ms(double budget_ms) const;
 };
 
-/// A target file (JSON): the model, the machine it was measured on, and how well it did.
-struct Target {
-  std::string id;      // "osmesa-llvmpipe-..."; readable
-  std::string sha256;  // of the file's bytes; filled when read
-  TimeModel model;
+/// Where frames were timed.
+struct Machine {
   std::string device;    // "osmesa" | "egl"
   std::string renderer;  // GL_RENDERER
   std::string gl_version;
   std::string processor;      // model name; another one is a warning only
   double reference_ms = 0.0;  // reference frame at calibration
+};
+
+/// A target file (JSON): the model, the machine it was measured on, and how well it did.
+struct Target {
+  std::string id;      // "osmesa-llvmpipe-..."; readable
+  std::string sha256;  // of the file's bytes; filled when read
+  TimeModel model;
+  Machine machine;
   // Held-out quality, for the report.
   std::uint32_t samples = 0;
   double median_error = 0.0;  // relative

@@ -3,6 +3,7 @@
 #include <iostream>
 
 #include "estimation/calibrate.h"
+#include "estimation/samples_file.h"
 #include "render/base/error.h"
 #include "render/device/fingerprint.h"
 #include "render/scene/city.h"
@@ -43,15 +44,21 @@ std::vector<TimedFrame> timed_frames(const std::vector<Scene>& scenes, const Com
   return frames;
 }
 
-Target make_target(const FitSummary& fit, const Context& device, const FrameTimer& timer, const JobSpec& spec) {
+CalibrationSamples time_samples(const CommandContext& context) {
+  const JobSpec& spec = context.spec;
+  const auto device = make_context(device_of(spec), spec.width, spec.height);
+  const auto timer = make_cpu_frame_timer(*device, {.repeats = kCalibrationRepeats});
+  CalibrationSamples samples;
+  samples.frames = timed_frames(training_scenes(context), context, *device, *timer);
+  samples.machine = {spec.device, device->renderer(), device->version(), processor_name(), timer->reference_ms()};
+  return samples;
+}
+
+Target make_target(const FitSummary& fit, const Machine& machine) {
   Target target;
   target.model = fit.model;
-  target.device = spec.device;
-  target.renderer = device.renderer();
-  target.gl_version = device.version();
-  target.processor = processor_name();
-  target.id = target.device + " on " + target.processor;
-  target.reference_ms = timer.reference_ms();
+  target.machine = machine;
+  target.id = machine.device + " on " + machine.processor;
   target.samples = fit.frames;
   target.median_error = fit.median_error;
   target.p90_error = fit.p90_error;
@@ -99,10 +106,11 @@ void explain(const TimeModel& model) {
 int evaluate_target(const CommandContext& context) {
   const Target target = read_target(context.arguments.evaluate);
   const auto device = make_context(device_of(context.spec), context.spec.width, context.spec.height);
-  if (context.spec.device != target.device || device->renderer() != target.renderer)
-    throw Failure(ErrorWord::kDeviceUnavailable, "target " + context.arguments.evaluate + " was measured on " + target.device + ", " +
-                                                     target.renderer + "; this is " + context.spec.device + ", " + device->renderer());
-  const auto timer = make_cpu_frame_timer(*device, {.repeats = kCalibrationRepeats, .reference_ms = target.reference_ms});
+  if (context.spec.device != target.machine.device || device->renderer() != target.machine.renderer)
+    throw Failure(ErrorWord::kDeviceUnavailable, "target " + context.arguments.evaluate + " was measured on " + target.machine.device +
+                                                     ", " + target.machine.renderer + "; this is " + context.spec.device + ", " +
+                                                     device->renderer());
+  const auto timer = make_cpu_frame_timer(*device, {.repeats = kCalibrationRepeats, .reference_ms = target.machine.reference_ms});
   const Evaluation result = evaluate(target.model, timed_frames(training_scenes(context), context, *device, *timer));
   const json object = {{"frames", result.frames},       {"median_error", result.median_error},
                        {"p90_error", result.p90_error}, {"coverage", result.coverage},
@@ -114,18 +122,25 @@ int evaluate_target(const CommandContext& context) {
 }  // namespace
 
 int calibrate_command(const CommandContext& context) {
-  const TimingLock lock(context.budget);
-  if (!context.arguments.evaluate.empty()) return evaluate_target(context);
-  if (context.arguments.output.empty()) throw Failure(ErrorWord::kBadUsage, "calibrate needs -o FILE, or --evaluate FILE");
-  const auto device = make_context(device_of(context.spec), context.spec.width, context.spec.height);
-  const auto timer = make_cpu_frame_timer(*device, {.repeats = kCalibrationRepeats});
-  const FitSummary fit = fit_time_model(timed_frames(training_scenes(context), context, *device, *timer), CalibrationOptions{}.coverage);
-  write_target(make_target(fit, *device, *timer, context.spec), context.arguments.output);
-  if (context.arguments.json)
+  const CommandArguments& arguments = context.arguments;
+  if (arguments.evaluate.empty() && arguments.output.empty())
+    throw Failure(ErrorWord::kBadUsage, "calibrate needs -o FILE, or --evaluate FILE");
+  CalibrationSamples samples;
+  if (!arguments.refit.empty()) {
+    samples = read_samples(arguments.refit);
+  } else {
+    const TimingLock lock(context.budget);
+    if (!arguments.evaluate.empty()) return evaluate_target(context);
+    samples = time_samples(context);
+  }
+  if (!arguments.samples.empty()) write_samples(samples, arguments.samples);
+  const FitSummary fit = fit_time_model(samples.frames, CalibrationOptions{}.coverage);
+  write_target(make_target(fit, samples.machine), arguments.output);
+  if (arguments.json)
     std::cout << fit_json(fit).dump(2) << "\n";
   else
     print_fit(fit);
-  if (context.arguments.explain) explain(fit.model);
+  if (arguments.explain) explain(fit.model);
   return 0;
 }
 

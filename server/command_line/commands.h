@@ -20,6 +20,8 @@ struct CommandArguments {
   std::string output;  // -o
   std::string target;
   std::string evaluate;   // calibrate --evaluate
+  std::string samples;    // calibrate --samples
+  std::string refit;      // calibrate --refit
   double seconds = 45.0;  // calibrate
   std::string objects;    // bake: "1,2,5-9"; empty: all
   std::string view_cell;  // bake: shaft:... or box:...

@@ -168,7 +168,7 @@ VerifyResult verify_placement(const VerifyInput& input, DeviceKind device, bool 
   if (measure)
     start_timing = [&](Context& timed) {
       TimingProtocol protocol;
-      protocol.reference_ms = input.target.reference_ms;
+      protocol.reference_ms = input.target.machine.reference_ms;
       auto lock = std::make_unique<TimingLock>(budget);
       return TimingSession{std::move(lock), make_cpu_frame_timer(timed, protocol)};
     };
