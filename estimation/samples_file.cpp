@@ -1,8 +1,8 @@
 #include "estimation/samples_file.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <limits>
 #include <string>
 #include <string_view>
 

@@ -42,11 +42,6 @@ struct SizeModel {
   std::uint32_t bakes = 0;
 };
 
-/// What an impostor of this estimated cost may come to, 9 times in 10 at most.
-[[nodiscard]] inline ImpostorCost with_margins(const ImpostorCost& cost, const SizeModel& sizes) {
-  return {cost.quads * sizes.quads_margin, cost.texels * sizes.bytes_margin, cost.texel_angle_rad};
-}
-
 struct Candidate {
   std::uint32_t node = 0;  // of the hierarchy
   ViewCell view_cell;

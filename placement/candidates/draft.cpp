@@ -55,7 +55,9 @@ std::optional<Draft> draft_candidate(const DraftContext& context, std::uint32_t 
   draft.candidate = {node, *view_cell, cells, std::move(objects), size.bytes, {}};
   // Texels are chosen so that the nearest layer is not magnified from the nearest point of the view cell.
   draft.candidate.cost = {size.quads, size.bytes / 4.0, context.quality.texel_scale / context.camera.focal_px()};
-  const ImpostorCost cautious = with_margins(draft.candidate.cost, context.sizes);
+  ImpostorCost cautious = draft.candidate.cost;
+  cautious.quads *= context.sizes.quads_margin;
+  cautious.texels *= context.sizes.bytes_margin;
   draft.cost = context.model.cost(impostor_features_bound(cautious, context.camera));
   return draft;
 }

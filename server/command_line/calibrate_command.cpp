@@ -2,7 +2,6 @@
 #include <cstdio>
 #include <iostream>
 
-#include "estimation/calibrate.h"
 #include "estimation/samples_file.h"
 #include "render/base/error.h"
 #include "render/device/fingerprint.h"

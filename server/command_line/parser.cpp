@@ -105,7 +105,8 @@ void add_input_commands(Grammar& grammar) {
   calibrate.scene(false);
   calibrate.app.add_option("--seconds", calibrate.arguments().seconds, "seconds of timed renders")->check(CLI::Range(1.0, 3600.0));
   calibrate.app.add_option("--evaluate", calibrate.arguments().evaluate, "target file to check on the scenes");
-  calibrate.app.add_option("--samples", calibrate.arguments().samples, "write the timed frames to this file (CSV) as well");
+  calibrate.app.add_option("--samples", calibrate.arguments().samples, "write the timed frames to this file (CSV) as well")
+      ->excludes("--evaluate");
   calibrate.app.add_option("--refit", calibrate.arguments().refit, "fit the frames of this file instead of timing any")
       ->excludes("--evaluate")
       ->excludes("--samples");

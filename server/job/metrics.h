@@ -12,12 +12,12 @@
 
 namespace standin {
 
-/// Per cell in plan view: the highest bound of any direction, before and (where there is a placement) after.
 /// The slowest views that a survey found, one a cell, slowest first; frame_ms is estimated.
 [[nodiscard]] nlohmann::json slow_views_json(const std::vector<SlowView>& slow);
 /// Their views, from metrics.json's survey.worst_views.
 [[nodiscard]] std::vector<View> slow_views_from_json(const nlohmann::json& worst_views);
 
+/// Per cell in plan view: the highest bound of any direction, before and (where there is a placement) after.
 [[nodiscard]] nlohmann::json heat_map_json(const Subdivision& subdivision, const Placement* placement, const TimeModel& model);
 
 /// What makes the slowest region of each cell slow: predicted milliseconds by draws, triangles and pixels, and the objects that cost most,
