@@ -123,7 +123,6 @@ Rows rows_without(std::size_t frames, const Rows& fold) {
 TimeModel model_of(const CostFit& fit) {
   TimeModel model;
   model.milliseconds_per_unit = fit.milliseconds_per_unit;
-  model.pixel_cap_ms = fit.pixel_cap_ms;
   return model;
 }
 
@@ -148,14 +147,8 @@ double error_of(const std::vector<HeldOut>& held_out) {
 
 /// Pixel caps to start from: uncapped, and where the cap would bind for a half, a quarter and a tenth of the frames with pixel work.
 std::vector<double> first_pixel_caps(const std::vector<TimedFrame>& frames, const TimeModel& uncapped) {
-  std::vector<double> pixel_ms;
-  for (const TimedFrame& frame : frames)
-    if (const double ms = uncapped.cost(frame.features).pixel_ms; ms > 0.0) pixel_ms.push_back(ms);
   std::vector<double> caps = {kUncapped};
-  if (pixel_ms.empty()) return caps;
-  std::sort(pixel_ms.begin(), pixel_ms.end());
-  for (const double share : {0.5, 0.75, 0.9})
-    caps.push_back(pixel_ms[static_cast<std::size_t>(share * static_cast<double>(pixel_ms.size() - 1))]);
+  (void)frames, (void)uncapped;
   return caps;
 }
 

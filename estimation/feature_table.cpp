@@ -16,68 +16,85 @@ Mat3 cofactor(const Mat3& m) {
   return {glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1])};
 }
 
-struct MeshInEye {
-  MeshInEye(const Mat3& eye_from_mesh_, const Vec3& origin_, double winding_)
-      : eye_from_mesh(eye_from_mesh_), eye_area_from_mesh(winding_ * cofactor(eye_from_mesh_)), origin(origin_) {}
-  Mat3 eye_from_mesh;
-  Mat3 eye_area_from_mesh;  // keeps front sides front under a mirroring transform, as the renderer does
-  Vec3 origin;              // of mesh space, in eye space
-
-  [[nodiscard]] double pixels(const SurfacePatch& patch, const Vec3& eye_point, const Projection& projection, bool double_sided) const {
-    const Vec3 vector_area_m2 = eye_area_from_mesh * patch.vector_area_m2;
-    if (!double_sided && !(glm::dot(vector_area_m2, eye_point) < 0.0)) return 0.0;
-    return projection.pixels(eye_point, vector_area_m2);
-  }
-};
-
-struct PartOnScreen {
-  double pixels = 0.0;
-  double triangles = 0.0;
-  double covering_triangles = 0.0;
-};
-
-PartOnScreen part_on_screen(const SurfaceSamples& samples, bool near, const MeshInEye& mesh, const Projection& projection,
-                            bool double_sided) {
-  PartOnScreen seen;
-  for (const SurfacePatch& patch : near ? samples.near_patches : samples.patches) {
-    const Vec3 point = mesh.eye_from_mesh * patch.point + mesh.origin;
-    if (projection.sees(point)) seen.pixels += mesh.pixels(patch, point, projection, double_sided);
-  }
-  for (const SurfacePatch& triangle : samples.triangles) {
-    const Vec3 point = mesh.eye_from_mesh * triangle.point + mesh.origin;
-    if (!projection.sees(point)) continue;
-    seen.triangles += samples.triangles_per_sample;
-    seen.covering_triangles += samples.triangles_per_sample * std::min(1.0, mesh.pixels(triangle, point, projection, double_sided));
-  }
-  return seen;
+/// By how much lengths in all directions grow; root mean square where the axes differ.
+double length_scale(const Mat3& m) {
+  return std::sqrt((glm::dot(m[0], m[0]) + glm::dot(m[1], m[1]) + glm::dot(m[2], m[2])) / 3.0);
 }
 
-/// A mesh where it stands in the world, seen from a box of eyes.
-struct MeshFromBox {
-  MeshFromBox(const Mat4& world_from_mesh_, const ProjectionFromBox& projection_)
-      : world_from_mesh(world_from_mesh_),
-        world_area_from_mesh((glm::determinant(world_from_mesh) < 0.0 ? -1.0 : 1.0) * cofactor(world_from_mesh)),
-        origin(world_from_mesh_[3]),
-        projection(projection_) {}
-  Mat3 world_from_mesh;
-  Mat3 world_area_from_mesh;
-  Vec3 origin;
-  const ProjectionFromBox& projection;
+/// A mesh where it stands, in world or eye space.
+struct PlacedMesh {
+  PlacedMesh(const Mat4& world_from_mesh, const Mat3& rotation, const Vec3& shift)
+      : placed_from_mesh(rotation * Mat3(world_from_mesh)),
+        area_from_mesh((glm::determinant(Mat3(world_from_mesh)) < 0.0 ? -1.0 : 1.0) * cofactor(placed_from_mesh)),
+        origin(rotation * (Vec3(world_from_mesh[3]) - shift)),
+        scale(length_scale(Mat3(world_from_mesh))) {}
 
-  [[nodiscard]] double most_pixels(const SurfacePatch& patch, bool double_sided) const {
-    return projection.most_pixels(world_from_mesh * patch.point + origin, world_area_from_mesh * patch.vector_area_m2, double_sided);
-  }
-  [[nodiscard]] double most_pixels(const std::vector<SurfacePatch>& patches, bool double_sided) const {
-    double sum = 0.0;
-    for (const SurfacePatch& patch : patches) sum += most_pixels(patch, double_sided);
-    return sum;
-  }
-  [[nodiscard]] double most_covering_triangles(const SurfaceSamples& samples, bool double_sided) const {
-    double sum = 0.0;
-    for (const SurfacePatch& triangle : samples.triangles) sum += std::min(1.0, most_pixels(triangle, double_sided));
-    return samples.triangles_per_sample * sum;
+  Mat3 placed_from_mesh;
+  Mat3 area_from_mesh;  // keeps front sides front under a mirroring transform, as the renderer does
+  Vec3 origin;
+  double scale;
+
+  [[nodiscard]] Vec3 point(const SurfaceSample& sample) const { return placed_from_mesh * sample.point + origin; }
+  [[nodiscard]] Vec3 vector_area_m2(const SurfaceSample& sample) const { return area_from_mesh * sample.vector_area_m2; }
+  [[nodiscard]] double edges_m(const SurfaceSample& sample) const { return scale * sample.edges_m; }
+};
+
+/// How a part is drawn.
+struct PartStyle {
+  PixelKind kind = PixelKind::kPlain;
+  bool double_sided = false;
+};
+
+PartStyle style_of(const Scene& scene, const Part& part) {
+  return {pixel_kind(scene, part), scene.materials[part.material].double_sided};
+}
+
+/// Adds what samples show in one image.
+struct ImageSum {
+  const Camera& camera;
+  Projection projection;
+  double most_edge_pixels;
+  Features& sum;
+  ScreenCoverage& coverage;
+
+  void add(const std::vector<SurfaceSample>& samples, const PlacedMesh& mesh, const PartStyle& style) {
+    for (const SurfaceSample& sample : samples) {
+      const Vec3 point = mesh.point(sample);
+      if (!projection.sees(point)) continue;
+      const Vec3 vector_area_m2 = mesh.vector_area_m2(sample);
+      if (!style.double_sided && !(glm::dot(vector_area_m2, point) < 0.0)) continue;
+      sum[Term::kOnScreenTriangles] += sample.triangles;
+      sum[Term::kEdgePixels] +=
+          std::min(projection.edge_pixels(point, vector_area_m2, mesh.edges_m(sample)), most_edge_pixels * sample.triangles);
+      const Vec2 place = Vec2(point.x, -point.y) * (projection.focal_px / -point.z);
+      coverage.add(style.kind, place.x + 0.5 * camera.width, place.y + 0.5 * camera.height, projection.pixels(point, vector_area_m2));
+    }
   }
 };
+
+/// The most that samples may show to any eye in a box.
+struct BoxSum {
+  const ProjectionFromBox& projection;
+  double most_edge_pixels;
+  double triangles = 0.0;
+  double edge_pixels = 0.0;
+  double pixels = 0.0;
+
+  void add(const std::vector<SurfaceSample>& samples, const PlacedMesh& mesh, const PartStyle& style) {
+    for (const SurfaceSample& sample : samples) {
+      const MostInImage most = projection.most(mesh.point(sample), mesh.vector_area_m2(sample), mesh.edges_m(sample), style.double_sided);
+      if (!most.faces) continue;
+      triangles += sample.triangles;
+      edge_pixels += std::min(most.edge_pixels, most_edge_pixels * sample.triangles);
+      pixels += most.pixels;
+    }
+  }
+};
+
+void add_passed(const ScreenCoverage& coverage, Features& sum) {
+  const auto passed = coverage.passed();
+  for (std::size_t kind = 0; kind < kPixelKindCount; ++kind) sum[kPixelTerm[kind]] += passed[kind];
+}
 
 }  // namespace
 
@@ -88,7 +105,10 @@ PixelKind pixel_kind(const Scene& scene, const Part& part) {
 }
 
 FeatureTable::FeatureTable(const Scene& scene, const Camera& camera)
-    : scene_(&scene), camera_(camera), screen_pixels_(static_cast<double>(camera.width) * camera.height) {
+    : scene_(&scene),
+      camera_(camera),
+      most_passed_pixels_(kOverdraw * camera.width * camera.height),
+      most_edge_pixels_(2.0 * (camera.width + camera.height)) {
   samples_.reserve(scene.meshes.size());
   for (const Mesh& mesh : scene.meshes) samples_.push_back(sample_surface(mesh, kSamplesPerMesh));
   shapes_.reserve(scene.objects.size());
@@ -99,31 +119,31 @@ FeatureTable::ObjectShape FeatureTable::shape_of(const Object& object) const {
   ObjectShape shape;
   shape.radius_m = 0.5 * object.bounds.diagonal();
   for (std::uint32_t p = object.first_part; p < object.first_part + object.part_count; ++p) {
-    const Part& part = scene_->parts[p];
     shape.counts[Term::kDraws] += 1.0;
-    shape.counts[Term::kTextureSwitches] += pixel_kind(*scene_, part) == PixelKind::kPlain ? 0.0 : 1.0;
-    shape.counts[Term::kTriangles] += static_cast<double>(scene_->meshes[part.mesh].triangle_count());
+    shape.counts[Term::kTriangles] += static_cast<double>(scene_->meshes[scene_->parts[p].mesh].triangle_count());
   }
   return shape;
 }
 
-Features FeatureTable::estimate(std::uint32_t object, const PreparedView& view) const {
+void FeatureTable::add(std::uint32_t object, const PreparedView& view, Features& sum, ScreenCoverage& coverage) const {
   const Object& drawn = scene_->objects[object];
-  if (!may_intersect(view.frustum, drawn.bounds)) return {};
-  const Mat3 world_from_mesh(drawn.world_from_object);
-  const MeshInEye mesh{view.eye_from_world * world_from_mesh, view.eye_from_world * (Vec3(drawn.world_from_object[3]) - view.position),
-                       glm::determinant(world_from_mesh) < 0.0 ? -1.0 : 1.0};
+  if (!may_intersect(view.frustum, drawn.bounds)) return;
+  sum += shapes_[object].counts;
+  const PlacedMesh mesh(drawn.world_from_object, view.eye_from_world, view.position);
   const bool near = distance(view.position, drawn.bounds) < shapes_[object].radius_m;
-  Features features = shapes_[object].counts;
+  ImageSum image{camera_, Projection(camera_), most_edge_pixels_, sum, coverage};
   for (std::uint32_t p = drawn.first_part; p < drawn.first_part + drawn.part_count; ++p) {
     const Part& part = scene_->parts[p];
-    const PartOnScreen seen =
-        part_on_screen(samples_[part.mesh], near, mesh, Projection(camera_), scene_->materials[part.material].double_sided);
-    features[kPixelTerm[static_cast<std::size_t>(pixel_kind(*scene_, part))]] += seen.pixels;
-    features[Term::kOnScreenTriangles] += seen.triangles;
-    features[Term::kCoveringTriangles] += seen.covering_triangles;
+    const SurfaceSamples& samples = samples_[part.mesh];
+    image.add(near ? samples.near_samples : samples.samples, mesh, style_of(*scene_, part));
   }
-  for (const Term term : kPixelTerm) features[term] = std::min(features[term], kMaxScreensPerObject * screen_pixels_);
+}
+
+Features FeatureTable::estimate(std::uint32_t object, const PreparedView& view) const {
+  Features features;
+  ScreenCoverage coverage(camera_);
+  add(object, view, features, coverage);
+  add_passed(coverage, features);
   return features;
 }
 
@@ -131,28 +151,29 @@ Features FeatureTable::bound(std::uint32_t object, const Box& eyes) const {
   if (eyes.empty()) throw Failure(ErrorWord::kInternal, "features of object " + std::to_string(object) + ": no eyes");
   const Object& drawn = scene_->objects[object];
   const ProjectionFromBox projection(camera_, eyes);
-  const MeshFromBox mesh(drawn.world_from_object, projection);
+  const PlacedMesh mesh(drawn.world_from_object, Mat3(1.0), Vec3(0.0));
   const bool maybe_near = distance(eyes, drawn.bounds) < shapes_[object].radius_m;
   Features features = shapes_[object].counts;
   for (std::uint32_t p = drawn.first_part; p < drawn.first_part + drawn.part_count; ++p) {
     const Part& part = scene_->parts[p];
-    const SurfaceSamples& samples = samples_[part.mesh];
-    const bool double_sided = scene_->materials[part.material].double_sided;
-    const double far_pixels = mesh.most_pixels(samples.patches, double_sided);
-    const double near_pixels = maybe_near ? mesh.most_pixels(samples.near_patches, double_sided) : 0.0;
-    features[kPixelTerm[static_cast<std::size_t>(pixel_kind(*scene_, part))]] += std::max(far_pixels, near_pixels);
-    features[Term::kCoveringTriangles] += mesh.most_covering_triangles(samples, double_sided);
+    const PartStyle style = style_of(*scene_, part);
+    BoxSum far{projection, most_edge_pixels_}, near{projection, most_edge_pixels_};
+    far.add(samples_[part.mesh].samples, mesh, style);
+    if (maybe_near) near.add(samples_[part.mesh].near_samples, mesh, style);
+    features[Term::kOnScreenTriangles] += std::max(far.triangles, near.triangles);
+    features[Term::kEdgePixels] += std::max(far.edge_pixels, near.edge_pixels);
+    features[kPixelTerm[static_cast<std::size_t>(style.kind)]] += std::max(far.pixels, near.pixels);
   }
-  for (const Term term : kPixelTerm) features[term] = std::min(features[term], kMaxScreensPerObject * screen_pixels_);
-  features[Term::kOnScreenTriangles] = features[Term::kTriangles];
-  features[Term::kCoveringTriangles] = std::min(features[Term::kCoveringTriangles], features[Term::kTriangles]);
+  for (const Term term : kPixelTerm) features[term] = std::min(features[term], most_passed_pixels_);
   return features;
 }
 
 Features FeatureTable::frame(std::span<const std::uint32_t> objects, const View& view) const {
   const PreparedView prepared(view, camera_);
   Features sum = frame_features();
-  for (const std::uint32_t object : objects) sum += estimate(object, prepared);
+  ScreenCoverage coverage(camera_);
+  for (const std::uint32_t object : objects) add(object, prepared, sum, coverage);
+  add_passed(coverage, sum);
   return sum;
 }
 

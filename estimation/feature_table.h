@@ -1,8 +1,9 @@
 // The features of a whole scene's objects, prepared once and asked often (thesis 5.2.1; features.h says what the terms mean).
 //
-// A single view's estimate sums f^2 |a.p| / z^3 over surface samples (projection.h). A bound for all views from a box sums the greatest
-// value of each of these terms over the box, sample by sample: every part of a large object counts at its own distance, and what faces
-// away from the whole box not at all. So bound >= estimate holds term by term, and a smaller box never has a larger bound.
+// A single view's estimate sums over surface samples (surface_samples.h, projection.h), and lets pass only as many pixels as the image has
+// room for (screen_coverage.h). A bound for all views from a box sums the greatest value of each of these terms over the box, sample by
+// sample: every part of a large object counts at its own distance, and what faces away from the whole box not at all. So bound >= estimate
+// holds term by term, and a smaller box never has a larger bound.
 #pragma once
 
 #include <span>
@@ -10,16 +11,11 @@
 
 #include "estimation/features.h"
 #include "estimation/projection.h"
+#include "estimation/screen_coverage.h"
 #include "estimation/surface_samples.h"
 
 namespace standin {
 
-/// No object's pixels of one kind count more often than this many screens: beyond that a renderer that draws front to back rejects them.
-inline constexpr double kMaxScreensPerObject = 4.0;
-
-/// How the pixels of a part are shaded; one pixel term each.
-enum class PixelKind : std::size_t { kPlain, kTextured, kMasked, kCount };
-inline constexpr std::size_t kPixelKindCount = static_cast<std::size_t>(PixelKind::kCount);
 /// As the renderer draws it: a texture needs coordinates, and an alpha test needs a texture.
 [[nodiscard]] PixelKind pixel_kind(const Scene& scene, const Part& part);
 
@@ -28,26 +24,30 @@ class FeatureTable {
  public:
   FeatureTable(const Scene& scene, const Camera& camera);
 
-  /// Estimate for one view; all zero when the object's bounds miss the frustum. About a microsecond a part, 15 for a part within reach.
+  /// Of an object alone in a view; all zero when its bounds miss the frustum. About a microsecond a part, 15 for a part within reach.
   [[nodiscard]] Features estimate(std::uint32_t object, const PreparedView& view) const;
-  /// Upper bound over all views from `eyes`, in any direction. About a microsecond a part.
+  /// Upper bound over all views from `eyes`, in any direction, of what an object adds to a frame. About a microsecond a part.
   [[nodiscard]] Features bound(std::uint32_t object, const Box& eyes) const;
-  /// A whole frame: frame_features() and the estimates of `objects`.
+  /// A whole frame: frame_features(), and `objects` as they hide each other. At most the sum of their estimates.
   [[nodiscard]] Features frame(std::span<const std::uint32_t> objects, const View& view) const;
 
   [[nodiscard]] const Camera& camera() const { return camera_; }
+  /// What all pixel terms of a frame's originals together are at most.
+  [[nodiscard]] double most_passed_pixels() const { return most_passed_pixels_; }
 
  private:
   struct ObjectShape {
-    Features counts;        // draws, switches, triangles: the same for every view
-    double radius_m = 0.0;  // of the bounds' sphere; an eye nearer than that needs the near patches
+    Features counts;        // draws, triangles: the same for every view
+    double radius_m = 0.0;  // of the bounds' sphere; an eye nearer than that needs the near samples
   };
 
   [[nodiscard]] ObjectShape shape_of(const Object& object) const;
+  void add(std::uint32_t object, const PreparedView& view, Features& sum, ScreenCoverage& coverage) const;
 
   const Scene* scene_;
   Camera camera_;
-  double screen_pixels_;
+  double most_passed_pixels_;
+  double most_edge_pixels_;  // of a triangle: no part of the image has a longer outline than the image
   std::vector<SurfaceSamples> samples_;  // per mesh
   std::vector<ObjectShape> shapes_;      // per object
 };

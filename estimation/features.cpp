@@ -6,8 +6,8 @@ namespace standin {
 
 std::string_view term_name(Term term) {
   static constexpr std::array<std::string_view, kTermCount> kNames = {
-      "frame",        "draws",           "texture_switches", "triangles",      "on_screen_triangles", "covering_triangles",
-      "plain_pixels", "textured_pixels", "masked_pixels",    "impostor_pixels"};
+      "frame",        "draws",           "texture_switches", "triangles",      "on_screen_triangles", "edge_pixels",
+      "plain_pixels", "textured_pixels", "masked_pixels",    "impostor_quads", "impostor_pixels"};
   return kNames[static_cast<std::size_t>(term)];
 }
 

@@ -1,8 +1,11 @@
 // Features of a frame that are known without rendering it (thesis 5.2.1, 5.8.1): what the time model multiplies.
 //
-// Features are additive over what is drawn. For a single view they are estimates; for a region they are upper bounds over all its views
-// from a box of eyes, and monotone: never less for a larger box. Pixel terms are counted before the
-// depth test; the model caps the sum of the originals' (time_model.h). Asked for more than once, take a FeatureTable (feature_table.h).
+// Features are additive over what is drawn, but for pixels, which hide each other: of a frame, only those count that pass the depth test
+// (screen_coverage.h). For a single view they are estimates; for a region they are upper bounds over all its views from a box of eyes, and
+// monotone: never less for a larger box. Asked for more than once, take a FeatureTable (feature_table.h).
+//
+// What costs nothing that frames of eight scenes could show beside these is left out: generated but hidden pixels, vertices, and the texture
+// switches of originals, which are drawn sorted (tests/bench/time_model.md).
 #pragma once
 
 #include <array>
@@ -18,19 +21,20 @@ namespace standin {
 enum class Term : std::size_t {
   kFrame,              // 1 per frame
   kDraws,              // draw calls
-  kTextureSwitches,    // changes of the bound texture, at most: draws sorted by texture save some
+  kTextureSwitches,    // of impostors' atlas pages
   kTriangles,          // submitted triangles
-  kOnScreenTriangles,  // of these, inside the frustum (the rest is clipped early)
-  kCoveringTriangles,  // sum over triangles of min(1, pixels per triangle)
-  kPlainPixels,        // generated pixels without texture
+  kOnScreenTriangles,  // of these, inside the frustum and not culled as back sides
+  kEdgePixels,         // length of these triangles' edges in the image: what is drawn in part, of blocks and pixels
+  kPlainPixels,        // pixels without texture that pass the depth test
   kTexturedPixels,
-  kMaskedPixels,    // alpha-tested: no early depth test
-  kImpostorPixels,  // nearest filtering, masked
+  kMaskedPixels,    // alpha-tested
+  kImpostorQuads,   // two triangles each, of which the triangle terms know nothing
+  kImpostorPixels,  // generated; nearest filtering, masked
   kCount
 };
 inline constexpr std::size_t kTermCount = static_cast<std::size_t>(Term::kCount);
 [[nodiscard]] std::string_view term_name(Term term);  // "draws" ...
-/// Pixels of originals, whose cost saturates as near ones hide far ones. An impostor's do not: its quads are masked, in no depth order.
+/// Pixels of originals: of a frame, together at most those of the image. An impostor's are not: its quads are masked, in no depth order.
 [[nodiscard]] bool is_pixel_term(Term term);
 
 struct Features {

@@ -27,11 +27,11 @@ double texel_area_m2(const ImpostorFrame& frame, const Layer& layer) {
   return frame.slope_step.x * frame.slope_step.y * layer.distance_m * layer.distance_m;
 }
 
-/// Everything but the pixels: one draw of two triangles a quad.
+/// Everything but the pixels.
 Features quad_features(double quads) {
   Features features;
   features[Term::kDraws] = quads > 0.0 ? 1.0 : 0.0;
-  features[Term::kTriangles] = 2.0 * quads;
+  features[Term::kImpostorQuads] = quads;
   return features;
 }
 
@@ -54,8 +54,6 @@ Features impostor_features_bound(const ImpostorCost& cost, const Camera& camera)
   Features features = quad_features(cost.quads);
   const double pixels_per_texel = cost.texel_angle_rad * cost.texel_angle_rad * greatest_pixels_per_m2_at_1m(camera);
   features[Term::kImpostorPixels] = (1.0 + 1e-9) * cost.texels * pixels_per_texel;
-  features[Term::kOnScreenTriangles] = features[Term::kTriangles];
-  features[Term::kCoveringTriangles] = std::min(features[Term::kTriangles], features[Term::kImpostorPixels]);
   return features;
 }
 
@@ -70,10 +68,7 @@ Features impostor_features(const Impostor& impostor, const Box& objects_bounds, 
     const Vec3 eye_point = prepared.eye_from_world * (centre - prepared.position);
     if (!projection.sees(eye_point)) continue;
     const double area_m2 = texel_area_m2(impostor.frame, layer) * quad.width * quad.height;
-    const double pixels = projection.pixels(eye_point, area_m2 * (prepared.eye_from_world * impostor.frame.forward));
-    features[Term::kImpostorPixels] += pixels;
-    features[Term::kOnScreenTriangles] += 2.0;
-    features[Term::kCoveringTriangles] += 2.0 * std::min(1.0, 0.5 * pixels);
+    features[Term::kImpostorPixels] += projection.pixels(eye_point, area_m2 * (prepared.eye_from_world * impostor.frame.forward));
   }
   return features;
 }

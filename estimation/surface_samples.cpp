@@ -11,7 +11,7 @@ struct Triangle {
 
   [[nodiscard]] Vec3 vector_area_m2() const { return 0.5 * glm::cross(b - a, c - a); }
   [[nodiscard]] double area_m2() const { return glm::length(vector_area_m2()); }
-  [[nodiscard]] Vec3 centroid() const { return (a + b + c) / 3.0; }
+  [[nodiscard]] double edges_m() const { return glm::length(b - a) + glm::length(c - b) + glm::length(a - c); }
   /// Maps the unit square evenly onto the triangle.
   [[nodiscard]] Vec3 at(double s, double t) const {
     const double root = std::sqrt(s);
@@ -31,44 +31,75 @@ Vec2 spread(std::uint32_t i) {
   return {x - std::floor(x), y - std::floor(y)};
 }
 
-double total_area_m2(const Mesh& mesh) {
-  double sum = 0.0;
-  for (std::size_t i = 0; i < mesh.triangle_count(); ++i) sum += triangle_of(mesh, i).area_m2();
+/// What a mesh's triangles add up to.
+struct Totals {
+  double area_m2 = 0.0;
+  double edges_m = 0.0;
+  double triangles = 0.0;
+};
+
+Totals totals_of(const Mesh& mesh) {
+  Totals sum;
+  sum.triangles = static_cast<double>(mesh.triangle_count());
+  for (std::size_t i = 0; i < mesh.triangle_count(); ++i) {
+    const Triangle triangle = triangle_of(mesh, i);
+    sum.area_m2 += triangle.area_m2();
+    sum.edges_m += triangle.edges_m();
+  }
   return sum;
 }
 
-std::vector<SurfacePatch> patches_by_area(const Mesh& mesh, std::uint32_t count) {
-  std::vector<SurfacePatch> patches;
-  const double step_m2 = total_area_m2(mesh) / count;
-  if (!(step_m2 > 0.0)) return patches;
-  double passed_m2 = 0.0;
+double share(double part, double whole) {
+  return whole > 0.0 ? part / whole : 0.0;
+}
+
+double ratio_or_zero(double wanted, double got) {
+  return got > 0.0 ? wanted / got : 0.0;
+}
+
+/// What is sampled adds up to the mesh only on average; made exact.
+void scale_to(const Totals& totals, std::vector<SurfaceSample>& samples) {
+  Totals sampled;
+  for (const SurfaceSample& sample : samples) {
+    sampled.area_m2 += glm::length(sample.vector_area_m2);
+    sampled.edges_m += sample.edges_m;
+    sampled.triangles += sample.triangles;
+  }
+  for (SurfaceSample& sample : samples) {
+    sample.vector_area_m2 *= ratio_or_zero(totals.area_m2, sampled.area_m2);
+    sample.edges_m *= ratio_or_zero(totals.edges_m, sampled.edges_m);
+    sample.triangles *= ratio_or_zero(totals.triangles, sampled.triangles);
+  }
+}
+
+std::vector<SurfaceSample> draw_samples(const Mesh& mesh, const Totals& totals, std::uint32_t count) {
+  const auto importance_of = [&](const Triangle& triangle) {
+    return 1.0 / totals.triangles + share(triangle.area_m2(), totals.area_m2) + share(triangle.edges_m(), totals.edges_m);
+  };
+  const double whole = 1.0 + (totals.area_m2 > 0.0 ? 1.0 : 0.0) + (totals.edges_m > 0.0 ? 1.0 : 0.0);
+  const double step = whole / count;
+  std::vector<SurfaceSample> samples;
+  double passed = 0.0;
   for (std::size_t i = 0; i < mesh.triangle_count(); ++i) {
     const Triangle triangle = triangle_of(mesh, i);
-    const double area_m2 = triangle.area_m2();
-    passed_m2 += area_m2;
-    while (patches.size() < count && (static_cast<double>(patches.size()) + 0.5) * step_m2 <= passed_m2) {
-      const Vec2 place = spread(static_cast<std::uint32_t>(patches.size()));
-      patches.push_back({triangle.at(place.x, place.y), triangle.vector_area_m2() * (step_m2 / area_m2)});
+    const double importance = importance_of(triangle);
+    const double stands_for = step / importance;
+    passed += importance;
+    while (samples.size() < count && (static_cast<double>(samples.size()) + 0.5) * step <= passed) {
+      const Vec2 place = spread(static_cast<std::uint32_t>(samples.size()));
+      samples.push_back({triangle.at(place.x, place.y), stands_for * triangle.vector_area_m2(), stands_for * triangle.edges_m(), stands_for});
     }
   }
-  return patches;
+  scale_to(totals, samples);
+  return samples;
 }
 
 }  // namespace
 
 SurfaceSamples sample_surface(const Mesh& mesh, std::uint32_t count) {
-  SurfaceSamples samples;
-  const std::size_t triangles = mesh.triangle_count();
-  if (triangles == 0) return samples;
-  samples.patches = patches_by_area(mesh, count);
-  samples.near_patches = patches_by_area(mesh, kNearFactor * count);
-  const std::size_t taken = std::min<std::size_t>(triangles, count);
-  samples.triangles_per_sample = static_cast<double>(triangles) / static_cast<double>(taken);
-  for (std::size_t i = 0; i < taken; ++i) {
-    const Triangle triangle = triangle_of(mesh, (2 * i + 1) * triangles / (2 * taken));
-    samples.triangles.push_back({triangle.centroid(), triangle.vector_area_m2()});
-  }
-  return samples;
+  if (mesh.triangle_count() == 0) return {};
+  const Totals totals = totals_of(mesh);
+  return {draw_samples(mesh, totals, count), draw_samples(mesh, totals, kNearFactor * count)};
 }
 
 }  // namespace standin

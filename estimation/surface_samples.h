@@ -1,8 +1,8 @@
 // A mesh reduced to a few points that stand for its surface: what the features of a view are summed over.
 //
-// Two sets, each drawn by systematic sampling (fixed positions along a running sum, so the same mesh gives the same samples): points spread
-// evenly over the *area* carry the pixels, triangles spread evenly over the *count* carry the triangle terms. One set cannot serve both: a
-// street of two triangles and its kerb of two thousand cover different shares of the screen than of the index buffer.
+// Points are drawn by systematic sampling (fixed positions along a running sum, so the same mesh gives the same samples), each triangle as
+// often as the mean of its shares of the triangle count, of the area and of all edges' length. One share alone cannot serve: a street of
+// two triangles and its kerb of two thousand cover different shares of the screen than of the index buffer.
 #pragma once
 
 #include <cstdint>
@@ -12,21 +12,22 @@
 
 namespace standin {
 
-/// A patch of surface: a point of it and its vector area (area times unit normal by winding), in mesh space.
-struct SurfacePatch {
+/// A point of the surface and what it stands for, in mesh space: a part of a large triangle, or some small triangles.
+struct SurfaceSample {
   Vec3 point{0.0};
-  Vec3 vector_area_m2{0.0};
+  Vec3 vector_area_m2{0.0};  // area times unit normal by winding
+  double edges_m = 0.0;      // length of the triangles' edges; an edge between two triangles counts twice, as it is drawn twice
+  double triangles = 0.0;    // may be a fraction
 };
 
 struct SurfaceSamples {
-  std::vector<SurfacePatch> patches;       // together the whole area
-  std::vector<SurfacePatch> near_patches;  // the same area in more patches, for an eye so near that some fill the image
-  std::vector<SurfacePatch> triangles;     // whole single triangles, centroids
-  double triangles_per_sample = 0.0;       // how many triangles each of `triangles` stands for
+  std::vector<SurfaceSample> samples;
+  std::vector<SurfaceSample> near_samples;  // the same surface in more samples, for an eye so near that some fill the image
 };
 
 inline constexpr std::uint32_t kNearFactor = 16;
-/// At most `count` >= 1 patches and triangles, kNearFactor times as many near patches; every triangle where there are no more than `count`.
+/// `count` >= 1 samples and kNearFactor times as many near ones, each set adding up to the mesh's area, edges and triangles; none for a mesh
+/// without triangles.
 [[nodiscard]] SurfaceSamples sample_surface(const Mesh& mesh, std::uint32_t count);
 
 }  // namespace standin

@@ -14,7 +14,7 @@ namespace {
 
 using Json = nlohmann::json;
 constexpr const char* kFormat = "standin.target";
-constexpr int kVersion = 1;
+constexpr int kVersion = 2;  // 1: other terms
 
 /// Reads members of a JSON object, naming file and place in every complaint.
 class Reader {
@@ -82,7 +82,6 @@ TimeModel read_model(const Reader& json) {
   TimeModel model;
   const Reader terms = json.object("milliseconds_per_unit");
   for (std::size_t i = 0; i < kTermCount; ++i) model.milliseconds_per_unit[i] = terms.number(std::string(term_name(static_cast<Term>(i))));
-  model.pixel_cap_ms = json.number_or_infinity("pixel_cap_ms");
   model.bound_steps = read_bound_steps(json);
   model.coverage = json.number("coverage");
   if (!(model.coverage > 0.0 && model.coverage < 1.0)) json.fail("\"coverage\" is not between 0 and 1");
@@ -95,7 +94,6 @@ Json model_json(const TimeModel& model) {
   Json steps = Json::array();
   for (const BoundStep& step : model.bound_steps) steps.push_back({{"until_ms", null_if_infinite(step.until_ms)}, {"factor", step.factor}});
   return {{"milliseconds_per_unit", terms},
-          {"pixel_cap_ms", null_if_infinite(model.pixel_cap_ms)},
           {"bound_steps", steps},
           {"coverage", model.coverage}};
 }

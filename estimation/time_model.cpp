@@ -16,7 +16,14 @@ Cost TimeModel::cost(const Features& features) const {
 }
 
 double TimeModel::predicted_ms(const Cost& frame) const {
-  return frame.fixed_ms + std::min(frame.pixel_ms, pixel_cap_ms);
+  return frame.fixed_ms + frame.pixel_ms;
+}
+
+double TimeModel::most_pixel_ms(double passed_pixels) const {
+  double costliest = 0.0;
+  for (std::size_t i = 0; i < kTermCount; ++i)
+    if (is_pixel_term(static_cast<Term>(i))) costliest = std::max(costliest, milliseconds_per_unit[i]);
+  return passed_pixels * costliest;
 }
 
 double TimeModel::bound_ms(double predicted_ms) const {

@@ -1,9 +1,10 @@
 // The rendering-time model of one target machine (thesis 5.2.1, 5.8.1): milliseconds as a non-negative linear function of Features, with an
 // upper bound of stated coverage.
 //
-// predicted = sum over non-pixel terms + min(sum over pixel terms, pixel_cap_ms): originals are drawn front to back, so a frame's
-// pixel work saturates (a region's bound must choose one of the two linear forms beforehand: Cost keeps them apart). The bound is a factor
-// times the prediction, conformal (split by scene) and made monotone; inverted once, it leaves placement a single predicted-time budget.
+// The pixels of a frame's originals saturate, since near ones hide far ones (screen_coverage.h): a region's bound is the sum of all its
+// objects' terms, or that of all but pixels and as many of the costliest pixels as can pass. It must choose one of these linear forms beforehand, so Cost
+// keeps the two parts apart. The bound is a factor times the prediction, conformal (split by scene) and made monotone; inverted once, it
+// leaves placement a single predicted-time budget.
 #pragma once
 
 #include <array>
@@ -19,7 +20,7 @@ namespace standin {
 /// Predicted milliseconds of something drawn, its two parts kept apart; adds up.
 struct Cost {
   double fixed_ms = 0.0;  // draws, switches, triangles, impostors' pixels
-  double pixel_ms = 0.0;  // what the cap limits
+  double pixel_ms = 0.0;  // of originals' pixels: of a frame, at most most_pixel_ms()
   Cost& operator+=(const Cost& other) {
     fixed_ms += other.fixed_ms;
     pixel_ms += other.pixel_ms;
@@ -36,12 +37,13 @@ struct BoundStep {
 
 struct TimeModel {
   std::array<double, kTermCount> milliseconds_per_unit{};  // >= 0
-  double pixel_cap_ms = 0.0;                               // infinity: no cap
   std::vector<BoundStep> bound_steps;
   double coverage = 0.99;  // stated, for frames exchangeable with the calibration set
 
   [[nodiscard]] Cost cost(const Features& features) const;
-  [[nodiscard]] double predicted_ms(const Cost& frame) const;  // fixed + min(pixel, cap)
+  [[nodiscard]] double predicted_ms(const Cost& frame) const;
+  /// The most that the pixels of a frame's originals may cost, of which at most `passed_pixels` pass.
+  [[nodiscard]] double most_pixel_ms(double passed_pixels) const;
   /// Non-decreasing; 0 at 0.
   [[nodiscard]] double bound_ms(double predicted_ms) const;
   /// Largest predicted time whose bound is within the budget; < 0 if none.

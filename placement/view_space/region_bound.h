@@ -5,8 +5,8 @@
 // face. Its cost bound is that of the cell's own box (the least over the chain: a smaller box never has a larger one). Child
 // regions are therefore never bounded above their parents, object by object.
 //
-// Pixel work saturates, so a region has two linear bounds: all terms with their pixels, or the pixel cap and terms without. The smaller is
-// chosen.
+// Pixel work saturates (screen_coverage.h), so a region has two linear bounds: all terms with their pixels, or terms without and as many of the
+// costliest pixels as can pass. The smaller is chosen.
 #pragma once
 
 #include <cstdint>
@@ -64,7 +64,7 @@ struct RegionSums {
 
 struct RegionBound {
   bool pixels_capped = false;  // the linear form chosen
-  double constant_ms = 0.0;    // the frame's own cost, and the pixel cap where capped
+  double constant_ms = 0.0;    // the frame's own cost, and the most that pixels may cost where capped
   double predicted_ms = 0.0;   // constant_ms plus all terms, summed in term order
   std::vector<RegionTerm> terms;
 };

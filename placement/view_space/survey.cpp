@@ -79,11 +79,7 @@ class Surveyor {
   }
 
   [[nodiscard]] double predict(const View& view, std::uint32_t cell) const {
-    const PreparedView prepared(view, camera_);
-    Cost frame = model_.cost(frame_features());
-    for (const std::uint32_t object : visible_from(cell))
-      if (may_intersect(prepared.frustum, scene_.objects[object].bounds)) frame += model_.cost(features_.estimate(object, prepared));
-    return model_.predicted_ms(frame);
+    return model_.predicted_ms(model_.cost(features_.frame(visible_from(cell), view)));
   }
 
   [[nodiscard]] SurveyedView survey_view(const View& view, std::uint32_t cell) const { return {view, cell, predict(view, cell)}; }

@@ -76,7 +76,6 @@ json fit_json(const FitSummary& fit) {
           {"coverage", fit.measured_coverage},
           {"bound_over_measured_median", fit.bound_over_measured_median},
           {"milliseconds_per_unit", terms},
-          {"pixel_cap_ms", std::isfinite(fit.model.pixel_cap_ms) ? json(fit.model.pixel_cap_ms) : json()},
           {"left_out", fit.left_out}};
 }
 
@@ -94,9 +93,8 @@ void explain(const TimeModel& model) {
               microseconds(Term::kDraws), microseconds(Term::kTextureSwitches));
   const double pixel = microseconds(Term::kTexturedPixels);
   if (pixel > 0) std::printf(", as much as %.0f textured pixels", microseconds(Term::kTextureSwitches) / pixel);
-  std::printf("\na thousand triangles %.0f us, %.0f us more on screen and %.0f us more where they cover pixels\n",
-              1e3 * microseconds(Term::kTriangles), 1e3 * microseconds(Term::kOnScreenTriangles),
-              1e3 * microseconds(Term::kCoveringTriangles));
+  std::printf("\na thousand triangles %.0f us, %.0f us more on screen and %.1f us more for each pixel that their edges are long\n",
+              1e3 * microseconds(Term::kTriangles), 1e3 * microseconds(Term::kOnScreenTriangles), 1e3 * microseconds(Term::kEdgePixels));
   std::printf("a million pixels: plain %.1f ms, textured %.1f ms, masked %.1f ms, of impostors %.1f ms\n",
               1e3 * microseconds(Term::kPlainPixels), 1e3 * pixel, 1e3 * microseconds(Term::kMaskedPixels),
               1e3 * microseconds(Term::kImpostorPixels));
