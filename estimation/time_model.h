@@ -2,8 +2,10 @@
 // upper bound of stated coverage.
 //
 // predicted = sum over non-pixel terms + min(sum over pixel terms, pixel_cap_ms): originals are drawn front to back, so a frame's
-// pixel work saturates (a region's bound must choose one of the two linear forms beforehand: Cost keeps them apart). The bound is a factor
-// times the prediction, conformal (split by scene) and made monotone; inverted once, it leaves placement a single predicted-time budget.
+// pixel work saturates (a region's bound must choose one of the two linear forms beforehand: Cost keeps them apart). Where the machine
+// overlaps its stages, a frame takes shared + max(geometry, fill) instead; regions are then bounded by the stages' sum, which is never
+// less (a second constraint a region would be tighter). The bound is a factor times the prediction, conformal (split by scene) and made
+// monotone; inverted once, it leaves placement a single predicted-time budget.
 #pragma once
 
 #include <array>
@@ -13,6 +15,7 @@
 #include <vector>
 
 #include "estimation/features.h"
+#include "estimation/stages.h"
 
 namespace standin {
 
@@ -37,11 +40,14 @@ struct BoundStep {
 struct TimeModel {
   std::array<double, kTermCount> milliseconds_per_unit{};  // >= 0
   double pixel_cap_ms = 0.0;                               // infinity: no cap
+  Combination combination = Combination::kSum;             // of the stages' times
   std::vector<BoundStep> bound_steps;
   double coverage = 0.99;  // stated, for frames exchangeable with the calibration set
 
   [[nodiscard]] Cost cost(const Features& features) const;
-  [[nodiscard]] double predicted_ms(const Cost& frame) const;  // fixed + min(pixel, cap)
+  [[nodiscard]] double predicted_ms(const Features& frame) const;
+  /// fixed + min(pixel, cap), the stages added up: an upper bound where they overlap.
+  [[nodiscard]] double predicted_ms(const Cost& frame) const;
   /// Non-decreasing; 0 at 0.
   [[nodiscard]] double bound_ms(double predicted_ms) const;
   /// Largest predicted time whose bound is within the budget; < 0 if none.

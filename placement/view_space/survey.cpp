@@ -80,9 +80,9 @@ class Surveyor {
 
   [[nodiscard]] double predict(const View& view, std::uint32_t cell) const {
     const PreparedView prepared(view, camera_);
-    Cost frame = model_.cost(frame_features());
+    Features frame = frame_features();
     for (const std::uint32_t object : visible_from(cell))
-      if (may_intersect(prepared.frustum, scene_.objects[object].bounds)) frame += model_.cost(features_.estimate(object, prepared));
+      if (may_intersect(prepared.frustum, scene_.objects[object].bounds)) frame += features_.estimate(object, prepared);
     return model_.predicted_ms(frame);
   }
 

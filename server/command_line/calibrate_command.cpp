@@ -66,6 +66,16 @@ Target make_target(const FitSummary& fit, const Machine& machine) {
   return target;
 }
 
+json terms_json(const std::vector<FittedTerm>& terms) {
+  json list = json::array();
+  for (const auto& term : terms)
+    list.push_back({{"name", term.name},
+                    {"milliseconds_per_unit", term.milliseconds_per_unit},
+                    {"relative_standard_error", term.relative_standard_error ? json(*term.relative_standard_error) : json()},
+                    {"at_bound", term.at_bound}});
+  return list;
+}
+
 json fit_json(const FitSummary& fit) {
   json terms = json::object();
   for (std::size_t i = 0; i < kTermCount; ++i) terms[std::string(term_name(static_cast<Term>(i)))] = fit.model.milliseconds_per_unit[i];
@@ -77,14 +87,24 @@ json fit_json(const FitSummary& fit) {
           {"bound_over_measured_median", fit.bound_over_measured_median},
           {"milliseconds_per_unit", terms},
           {"pixel_cap_ms", std::isfinite(fit.model.pixel_cap_ms) ? json(fit.model.pixel_cap_ms) : json()},
-          {"left_out", fit.left_out}};
+          {"combination", fit.model.combination == Combination::kSum ? "sum" : "max"},
+          {"sum_error", fit.sum_error},
+          {"max_error", fit.max_error},
+          {"condition_number", std::isfinite(fit.condition_number) ? json(fit.condition_number) : json()},
+          {"terms", terms_json(fit.terms)},
+          {"left_out", fit.left_out},
+          {"warnings", fit.warnings}};
 }
 
 void print_fit(const FitSummary& fit) {
   std::printf(
       "%u frames; held out: median error %.1f %%, p90 %.1f %%, the bound covers %.2f %% and is %.2fx the measured time at the median\n",
       fit.frames, 100 * fit.median_error, 100 * fit.p90_error, 100 * fit.measured_coverage, fit.bound_over_measured_median);
+  if (fit.model.combination == Combination::kMax)
+    std::printf("geometry and fill overlap: the error is %.1f %% where they add up, %.1f %% where the longer one counts\n",
+                100 * fit.sum_error, 100 * fit.max_error);
   for (const auto& reason : fit.left_out) std::printf("  left out: %s\n", reason.c_str());
+  for (const auto& warning : fit.warnings) std::printf("  warning: %s\n", warning.c_str());
 }
 
 // Each term in units of another, for people.

@@ -30,7 +30,7 @@ TEST(TimeModel, KeepsPixelWorkApart) {
   EXPECT_DOUBLE_EQ(cost.fixed_ms, 1.5);
   EXPECT_DOUBLE_EQ(cost.pixel_ms, 2.0);
   EXPECT_DOUBLE_EQ(model.predicted_ms(cost), 3.5);
-  EXPECT_DOUBLE_EQ(model.predicted_ms({1.5, 200.0}), 6.5);
+  EXPECT_DOUBLE_EQ(model.predicted_ms(Cost{1.5, 200.0}), 6.5);
 }
 
 // A view full of impostors must not count as free because the originals' pixels have a cap.
@@ -40,6 +40,43 @@ TEST(TimeModel, DoesNotCapImpostorPixels) {
   Features features;
   features[Term::kImpostorPixels] = 100.0;
   EXPECT_DOUBLE_EQ(model.predicted_ms(model.cost(features)), 25.0);
+}
+
+// By hand: shared 2, geometry 3 x 0.5, fill 8 x 0.25 + 4 x 0.5.
+TEST(TimeModel, TakesTheLongerStageWhereStagesOverlap) {
+  TimeModel model = model_with({{kInfinity, 1.0}});
+  model.pixel_cap_ms = kInfinity;
+  model.milliseconds_per_unit[static_cast<std::size_t>(Term::kFrame)] = 2.0;
+  model.milliseconds_per_unit[static_cast<std::size_t>(Term::kDraws)] = 0.5;
+  model.milliseconds_per_unit[static_cast<std::size_t>(Term::kMaskedPixels)] = 0.25;
+  model.milliseconds_per_unit[static_cast<std::size_t>(Term::kImpostorPixels)] = 0.5;
+  Features frame = frame_features();
+  frame[Term::kDraws] = 3.0;
+  frame[Term::kMaskedPixels] = 8.0;
+  frame[Term::kImpostorPixels] = 4.0;
+  EXPECT_DOUBLE_EQ(model.predicted_ms(frame), 7.5);
+  model.combination = Combination::kMax;
+  EXPECT_DOUBLE_EQ(model.predicted_ms(frame), 6.0);
+  frame[Term::kDraws] = 100.0;
+  EXPECT_DOUBLE_EQ(model.predicted_ms(frame), 52.0);
+  EXPECT_DOUBLE_EQ(model.predicted_ms(model.cost(frame)), 56.0) << "what regions are bounded by";
+}
+
+// Regions of a machine whose stages overlap are bounded by the sum.
+TEST(TimeModel, SumIsNeverLessThanTheLongerStage) {
+  for (std::uint64_t seed = 0; seed < 200; ++seed) {
+    Rng rng(seed, 2);
+    TimeModel model = model_with({{kInfinity, 1.0}});
+    model.pixel_cap_ms = kInfinity;
+    Features frame;
+    for (std::size_t i = 0; i < kTermCount; ++i) {
+      model.milliseconds_per_unit[i] = std::pow(10.0, rng.uniform(-9.0, 3.0));
+      frame.value[i] = rng.uniform() < 0.3 ? 0.0 : std::pow(10.0, rng.uniform(-3.0, 9.0));
+    }
+    const double sum_ms = model.predicted_ms(frame);
+    model.combination = Combination::kMax;
+    ASSERT_LE(model.predicted_ms(frame), sum_ms * (1.0 + 1e-14)) << "seed " << seed;
+  }
 }
 
 TEST(TimeModel, BoundStaysLevelUntilALesserFactorHasCaughtUp) {
