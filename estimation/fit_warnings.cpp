@@ -106,14 +106,15 @@ std::optional<SpeedStep> speed_step(const std::vector<double>& logs) {
   return SpeedStep{at, std::exp(after - before)};
 }
 
-/// Scene by scene: one that the model takes for too cheap is no change of speed.
+/// Scene by scene: one that the model takes for too cheap is no change of speed. Nearly empty frames do not matter to the fit, nor here.
 std::optional<std::string> two_speeds(const std::vector<TimedFrame>& frames, const TimeModel& model) {
   std::map<std::uint32_t, std::vector<std::size_t>> by_scene;
-  for (std::size_t row = 0; row < frames.size(); ++row) by_scene[frames[row].group].push_back(row);
+  for (std::size_t row = 0; row < frames.size(); ++row)
+    if (frames[row].milliseconds > kSmallFrameMs && model.predicted_ms(frames[row].features) > 0.0)
+      by_scene[frames[row].group].push_back(row);
   for (const auto& [group, rows] : by_scene) {
     std::vector<double> logs;
-    for (const std::size_t row : rows)
-      logs.push_back(std::log((frames[row].milliseconds + kSmallFrameMs) / (model.predicted_ms(frames[row].features) + kSmallFrameMs)));
+    for (const std::size_t row : rows) logs.push_back(std::log(frames[row].milliseconds / model.predicted_ms(frames[row].features)));
     if (const auto step = speed_step(logs))
       return text("from frame %zu on the machine was %.2fx as slow as before: time again with other programs and power saving off",
                   rows[step->first], step->ratio);

@@ -48,22 +48,20 @@ class RowQr {
   Index used_;
 };
 
-/// Least |a v - b| over v >= 0 (Lawson and Hanson 1974, algorithm 23.10); columns that depend on those already in stay out.
+/// Least |a v - b| over v >= 0 (Lawson and Hanson 1974, algorithm 23.10); columns that depend on those already in stay out. It begins with
+/// the columns of `start` that are above 0: which of two nearly equal columns should enter, gradients cannot tell for rounding.
 class NonNegativeLeastSquares {
  public:
-  NonNegativeLeastSquares(const Matrix& a, const Vector& b) : a_(a), b_(b), v_(Vector::Zero(a.cols())), out_(a.cols(), false) {}
+  NonNegativeLeastSquares(const Matrix& a, const Vector& b, const Vector& start) : a_(a), b_(b), v_(start), out_(a.cols(), false) {}
 
   Vector solve() {
+    for (Index j = 0; j < a_.cols(); ++j)
+      if (v_[j] > 0.0 && !enter(j)) v_[j] = 0.0;
+    descend(-1);
     for (Index guard = 0; guard < 10 * a_.cols(); ++guard) {
       const Index entering = best_to_enter();
       if (entering < 0) break;
-      passive_.push_back(entering);
-      if (dependent()) {
-        passive_.pop_back();
-        out_[static_cast<std::size_t>(entering)] = true;
-        continue;
-      }
-      if (!descend(entering)) out_[static_cast<std::size_t>(entering)] = true;
+      if (!enter(entering) || !descend(entering)) out_[static_cast<std::size_t>(entering)] = true;
     }
     return v_;
   }
@@ -75,7 +73,13 @@ class NonNegativeLeastSquares {
     return some;
   }
 
-  /// The last column among the passive ones.
+  bool enter(Index column) {
+    passive_.push_back(column);
+    if (dependent()) passive_.pop_back();
+    return !passive_.empty() && passive_.back() == column;
+  }
+
+  /// The last column on the other passive ones.
   [[nodiscard]] bool dependent() const {
     const Matrix r = Eigen::HouseholderQR<Matrix>(columns()).matrixQR();
     const Index last = r.cols() - 1;
@@ -177,37 +181,59 @@ class Finisher {
   QuadraticModel newton_model() {
     RowQr qr(n_ + 1);
     std::vector<std::size_t> apart;
+    Vector gradient = Vector::Zero(n_);
     for (std::size_t i = 0; i < rows_.rows(); ++i) {
       const double residual = rows_.residual(i, u_.data(), derivative_.data());
       const Loss::Value value = loss_.at(residual);
+      gradient += value.slope * residual * Eigen::Map<const Vector>(derivative_.data(), n_);
       if (value.curvature < kLeastCurvature * value.slope)
         apart.push_back(i);
       else
         push(qr, residual, value.slope, value.curvature);
     }
-    const Matrix triangle = qr.triangle();
-    const Matrix r = triangle.topLeftCorner(n_, n_);
-    const Vector c = triangle.col(n_).head(n_);
-    if (apart.empty()) return around({r, c});
+    const std::vector<Index> free = free_terms(gradient);
+    const Matrix triangle = columns_of(qr.triangle(), free);
+    const auto m = static_cast<Index>(free.size());
+    const Matrix r = triangle.topLeftCorner(m, m);
+    const Vector c = triangle.col(m).head(m);
+    if (apart.empty()) return around(r, c, free);
+    for (Index k = 0; k < m; ++k)
+      if (!(std::abs(r(k, k)) > kWhitens * r.col(k).norm())) return majorising_model();
+    return corrected(r, c, free, apart);
+  }
+
+  /// All but those that their bound holds: the objective may well curve downwards along them.
+  [[nodiscard]] std::vector<Index> free_terms(const Vector& gradient) const {
+    std::vector<Index> free;
     for (Index j = 0; j < n_; ++j)
-      if (!(std::abs(r(j, j)) > kWhitens * r.col(j).norm())) return majorising_model();
-    return corrected(r, c, apart);
+      if (u_[static_cast<std::size_t>(j)] > 0.0 || gradient[j] < 0.0) free.push_back(j);
+    return free;
+  }
+
+  /// The triangle of these columns and the last one.
+  [[nodiscard]] Matrix columns_of(const Matrix& triangle, const std::vector<Index>& free) const {
+    Matrix some(n_ + 1, static_cast<Index>(free.size()) + 1);
+    for (std::size_t k = 0; k < free.size(); ++k) some.col(static_cast<Index>(k)) = triangle.col(free[k]);
+    some.col(some.cols() - 1) = triangle.col(n_);
+    return Eigen::HouseholderQR<Matrix>(some).matrixQR().template triangularView<Eigen::Upper>();
   }
 
   /// With the rows kept apart: in y = R d the model is |y - c|^2 / 2 + sum of (slope * residual * z y + curvature (z y)^2 / 2), z = R^-T x.
-  QuadraticModel corrected(const Matrix& r, const Vector& c, const std::vector<std::size_t>& apart) {
-    Matrix hessian = Matrix::Identity(n_, n_);
+  QuadraticModel corrected(const Matrix& r, const Vector& c, const std::vector<Index>& free, const std::vector<std::size_t>& apart) {
+    Matrix hessian = Matrix::Identity(r.cols(), r.cols());
     Vector pull = c;
+    Vector z(r.cols());
     for (const std::size_t i : apart) {
       const double residual = rows_.residual(i, u_.data(), derivative_.data());
       const Loss::Value value = loss_.at(residual);
-      const Vector z = r.transpose().triangularView<Eigen::Lower>().solve(Eigen::Map<const Vector>(derivative_.data(), n_));
+      for (Index k = 0; k < z.size(); ++k) z[k] = derivative_[static_cast<std::size_t>(free[static_cast<std::size_t>(k)])];
+      r.transpose().triangularView<Eigen::Lower>().solveInPlace(z);
       hessian.selfadjointView<Eigen::Lower>().rankUpdate(z, value.curvature);
       pull -= value.slope * residual * z;
     }
     const Eigen::LLT<Matrix> root(hessian);
     if (root.info() != Eigen::Success) return majorising_model();
-    return around({root.matrixU() * r, root.matrixL().solve(pull)});
+    return around(root.matrixU() * r, root.matrixL().solve(pull), free);
   }
 
   QuadraticModel majorising_model() {
@@ -218,20 +244,26 @@ class Finisher {
       push(qr, residual, slope, slope);
     }
     const Matrix triangle = qr.triangle();
-    return around({triangle.topLeftCorner(n_, n_), triangle.col(n_).head(n_)});
+    std::vector<Index> all;
+    for (Index j = 0; j < n_; ++j) all.push_back(j);
+    return around(triangle.topLeftCorner(n_, n_), triangle.col(n_).head(n_), all);
   }
 
-  /// From a model of the step to one of the new coefficients.
-  [[nodiscard]] QuadraticModel around(QuadraticModel step) const {
-    step.b += step.a * Eigen::Map<const Vector>(u_.data(), n_);
-    return step;
+  /// From a model |r d - c|^2 of the step in some terms to one of all new coefficients; the other terms' columns are 0.
+  [[nodiscard]] QuadraticModel around(const Matrix& r, const Vector& c, const std::vector<Index>& terms) const {
+    QuadraticModel model{Matrix::Zero(r.rows(), n_), c};
+    for (std::size_t k = 0; k < terms.size(); ++k) {
+      model.a.col(terms[k]) = r.col(static_cast<Index>(k));
+      model.b += u_[static_cast<std::size_t>(terms[k])] * r.col(static_cast<Index>(k));
+    }
+    return model;
   }
 
   /// Towards the model's minimum as far as the objective falls; true when that was the last step needed.
   bool advance(const QuadraticModel& model) {
     moved_ = false;
     const Vector u = Eigen::Map<const Vector>(u_.data(), n_);
-    const Vector wanted = NonNegativeLeastSquares(model.a, model.b).solve();
+    const Vector wanted = NonNegativeLeastSquares(model.a, model.b, u).solve();
     const bool to_rounding = (model.a * (wanted - u)).squaredNorm() <= 1e-30 * targets_;
     const bool last = within_tolerance(u, wanted) || to_rounding;
     // Near the end a whole step changes the objective by less than its rounding, which then decides nothing.
