@@ -3,6 +3,7 @@
 #include <iostream>
 
 #include "estimation/samples_file.h"
+#include "estimation/self_test.h"
 #include "render/base/error.h"
 #include "render/device/fingerprint.h"
 #include "render/scene/city.h"
@@ -138,12 +139,30 @@ int evaluate_target(const CommandContext& context) {
   return result.coverage >= target.model.coverage ? 0 : 1;
 }
 
+// A table for people (Markdown), or JSON.
+int self_test(bool as_json) {
+  json rows = json::array();
+  std::size_t failed = 0;
+  if (!as_json) std::printf("| case | expected | got | |\n|---|---|---|---|\n");
+  for (const auto& test_case : self_test_cases()) {
+    const SelfTestOutcome outcome = run_self_test(test_case);
+    failed += outcome.passed ? 0 : 1;
+    rows.push_back({{"name", test_case.name}, {"expected", test_case.expected}, {"got", outcome.got}, {"passed", outcome.passed}});
+    if (!as_json)
+      std::printf("| %s | %s | %s | %s |\n", test_case.name.c_str(), test_case.expected.c_str(), outcome.got.c_str(),
+                  outcome.passed ? "ok" : "FAILED");
+  }
+  if (as_json) std::cout << json({{"cases", rows}, {"passed", rows.size() - failed}, {"failed", failed}}).dump(2) << "\n";
+  return failed == 0 ? 0 : 1;
+}
+
 }  // namespace
 
 int calibrate_command(const CommandContext& context) {
   const CommandArguments& arguments = context.arguments;
+  if (arguments.self_test) return self_test(arguments.json);
   if (arguments.evaluate.empty() && arguments.output.empty())
-    throw Failure(ErrorWord::kBadUsage, "calibrate needs -o FILE, or --evaluate FILE");
+    throw Failure(ErrorWord::kBadUsage, "calibrate needs -o FILE, --evaluate FILE or --self-test");
   CalibrationSamples samples;
   if (!arguments.refit.empty()) {
     samples = read_samples(arguments.refit);
