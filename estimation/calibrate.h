@@ -3,6 +3,8 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "estimation/time_model.h"
@@ -13,7 +15,7 @@ namespace standin {
 
 /// One timed frame; `group` is the scene it came from (the bound leaves one out at a time).
 struct TimedFrame {
-  Features features;  // estimate for its view; pixel terms before capping
+  Features features;  // estimate for its view
   double milliseconds = 0.0;
   std::uint32_t group = 0;
 };
@@ -33,18 +35,32 @@ struct CalibrationOptions {
 [[nodiscard]] std::vector<TimedFrame> sample_frames(const Scene& scene, std::uint32_t group, Context& context, FrameTimer& timer,
                                                     const Camera& camera, const CalibrationOptions& options, const WorkBudget& budget);
 
+/// A term that takes part in the fit.
+struct FittedTerm {
+  std::string name;
+  double milliseconds_per_unit = 0.0;
+  std::optional<double> relative_standard_error;  // none at 0
+  bool at_bound = false;                          // 0, since the frames would have it negative
+};
+
 struct FitSummary {
   TimeModel model;
-  std::string stopped;  // how the solver ended
+  std::string stopped;            // how the solver ended
+  double condition_number = 1.0;  // of the weighted, scaled columns of the terms above 0
+  std::vector<FittedTerm> terms;
+  double sum_error = 0.0;  // mean held-out error where the stages' times add up, and where they overlap: model.combination is the choice
+  double max_error = 0.0;
   std::uint32_t frames = 0;
   double median_error = 0.0;  // held out, relative
   double p90_error = 0.0;
   double measured_coverage = 0.0;  // held out
   double bound_over_measured_median = 0.0;
   std::vector<std::string> left_out;
+  std::vector<std::string> warnings;  // what a user can do something about
 };
 
-/// Deterministic. Errors and bound are those on frames held out: scene by scene, or in five random folds where there is one scene only (or
+/// Deterministic. Terms the frames cannot support are dropped and named. Stages add up unless the held-out error speaks for an overlap
+/// (held_out.h). Errors and bound are those on frames held out: scene by scene, or in five random folds where there is one scene only (or
 /// one that no other can stand in for). Throws Failure(kBadUsage) naming the row for a time that is not finite and positive, or when there
 /// are too few frames.
 [[nodiscard]] FitSummary fit_time_model(const std::vector<TimedFrame>& frames, double coverage);

@@ -55,7 +55,7 @@ Evaluation evaluate(const TimeModel& model, const std::vector<TimedFrame>& frame
   std::vector<HeldOut> held_out;
   std::vector<double> bounds_ms;
   for (const TimedFrame& frame : frames) {
-    held_out.push_back({model.predicted_ms(model.cost(frame.features)), frame.milliseconds});
+    held_out.push_back({model.predicted_ms(frame.features), frame.milliseconds});
     bounds_ms.push_back(model.bound_ms(held_out.back().predicted_ms));
   }
   return summarise(held_out, bounds_ms);

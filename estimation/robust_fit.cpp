@@ -2,109 +2,153 @@
 #include "estimation/robust_fit.h"
 
 #include <ceres/ceres.h>
+#include <ceres/gradient_checker.h>
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "estimation/newton_finish.h"
+#include "estimation/scaled_rows.h"
 #include "render/base/error.h"
 
 namespace standin {
 namespace {
 
-using Coefficients = std::array<double, kTermCount>;
+constexpr std::size_t kBasinRows = 1500;
+constexpr double kConvexScale = 0.2;
 
-constexpr double kNeverReached_ms = std::numeric_limits<double>::max();  // Ceres takes no infinity
-
-/// (predicted - measured) / (measured + small frame) over scaled coefficients u: milliseconds per unit = u * unit.
-struct FrameResidual {
-  std::array<double, kTermCount> fixed{};  // scaled features, pixel terms apart
-  std::array<double, kTermCount> pixels{};
-  double milliseconds;
-  double weight;
-
-  FrameResidual(const TimedFrame& frame, const Coefficients& unit)
-      : milliseconds(frame.milliseconds), weight(1.0 / (frame.milliseconds + kSmallFrameMs)) {
-    for (std::size_t i = 0; i < kTermCount; ++i)
-      (is_pixel_term(static_cast<Term>(i)) ? pixels : fixed)[i] = frame.features.value[i] * unit[i];
+/// All rows' residuals over the scaled coefficients, the loss inside: r' = sign(r) sqrt(rho(r^2)), which is smooth, so that half the sum of
+/// squares is the robust objective. One block instead of one a row: Ceres' book-keeping would cost more than the sums.
+class RobustResiduals : public ceres::CostFunction {
+ public:
+  RobustResiduals(const ScaledRows& rows, const Loss& loss) : rows_(rows), loss_(loss) {
+    set_num_residuals(static_cast<int>(rows.rows()));
+    mutable_parameter_block_sizes()->push_back(static_cast<int>(rows.terms()));
   }
 
-  template <typename T>
-  bool operator()(const T* u, const T* pixel_cap_ms, T* residual) const {
-    T fixed_ms(0.0);
-    T pixel_ms(0.0);
-    for (std::size_t i = 0; i < kTermCount; ++i) {
-      fixed_ms += fixed[i] * u[i];
-      pixel_ms += pixels[i] * u[i];
+  bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
+    const double* u = parameters[0];
+    double* jacobian = jacobians != nullptr ? jacobians[0] : nullptr;
+    for (std::size_t i = 0; i < rows_.rows(); ++i) {
+      double* derivative = jacobian != nullptr ? jacobian + i * rows_.terms() : nullptr;
+      const double r = derivative != nullptr ? rows_.residual(i, u, derivative) : rows_.residual(i, u);
+      const Loss::Value value = loss_.at(r);
+      const bool tiny = !(value.rho > 0.0);  // r^2 has vanished: the loss is r^2
+      residuals[i] = tiny ? r : std::copysign(std::sqrt(value.rho), r);
+      if (derivative == nullptr || tiny) continue;
+      const double inner = value.slope * r / residuals[i];
+      for (std::size_t j = 0; j < rows_.terms(); ++j) derivative[j] *= inner;
     }
-    *residual = (fixed_ms + (pixel_ms < *pixel_cap_ms ? pixel_ms : *pixel_cap_ms) - milliseconds) * weight;
     return true;
   }
+
+ private:
+  const ScaledRows& rows_;
+  Loss loss_;
 };
 
-/// Milliseconds per unit at which a term alone would explain the frames (root mean square): makes every unknown of order one.
-Coefficients column_units(const std::vector<TimedFrame>& frames, const std::vector<std::size_t>& rows) {
-  Coefficients unit{};
-  for (std::size_t i = 0; i < kTermCount; ++i) {
-    double sum = 0.0;
-    for (const std::size_t row : rows) {
-      const double relative = frames[row].features.value[i] / (frames[row].milliseconds + kSmallFrameMs);
-      sum += relative * relative;
-    }
-    unit[i] = sum > 0.0 ? std::sqrt(static_cast<double>(rows.size()) / sum) : 0.0;
-  }
-  return unit;
-}
-
-/// One least-squares problem over scaled coefficients `u` and the cap, both changed in place.
-std::string solve(const std::vector<TimedFrame>& frames, const std::vector<std::size_t>& rows, const TermSet& terms,
-                  const Coefficients& unit, double tolerance, ceres::LossFunction* loss, Coefficients& u, double& pixel_cap_ms) {
-  ceres::Problem::Options ownership;
-  ownership.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-  ceres::Problem problem(ownership);
-  for (const std::size_t row : rows)
-    problem.AddResidualBlock(
-        new ceres::AutoDiffCostFunction<FrameResidual, 1, static_cast<int>(kTermCount), 1>(new FrameResidual(frames[row], unit)), loss,
-        u.data(), &pixel_cap_ms);
-  std::vector<int> held;
-  for (std::size_t i = 0; i < kTermCount; ++i) {
-    problem.SetParameterLowerBound(u.data(), static_cast<int>(i), 0.0);
-    if (!terms[i]) held.push_back(static_cast<int>(i));
-  }
-  if (!held.empty()) problem.SetManifold(u.data(), new ceres::SubsetManifold(static_cast<int>(kTermCount), held));
-  if (pixel_cap_ms == kNeverReached_ms)
-    problem.SetParameterBlockConstant(&pixel_cap_ms);
-  else
-    problem.SetParameterLowerBound(&pixel_cap_ms, 0, 0.0);
+/// Least squares within bounds, roughly: Newton's method ends what this begins.
+void solve(const ScaledRows& rows, const Loss& loss, double tolerance, std::vector<double>& u) {
+  ceres::Problem problem;
+  problem.AddResidualBlock(new RobustResiduals(rows, loss), nullptr, u.data());
+  for (std::size_t j = 0; j < u.size(); ++j) problem.SetParameterLowerBound(u.data(), static_cast<int>(j), 0.0);
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::DENSE_QR;
-  options.max_num_iterations = 200;
+  options.max_num_iterations = 50;
   options.function_tolerance = options.gradient_tolerance = options.parameter_tolerance = tolerance;
   options.logging_type = ceres::SILENT;
   options.num_threads = 1;
   ceres::Solver::Summary summary;
   ceres::Solve(options, &problem, &summary);
   if (!summary.IsSolutionUsable()) throw Failure(ErrorWord::kInternal, "the time model's fit failed: " + summary.message);
-  return std::string(ceres::TerminationTypeToString(summary.termination_type)) + ": " + summary.message;
+}
+
+[[noreturn]] void refuse(std::size_t row, const std::string& what, double value) {
+  throw Failure(ErrorWord::kBadUsage, "row " + std::to_string(row) + ": " + what + " is " + std::to_string(value));
+}
+
+void check(const FitProblem& problem) {
+  if (problem.rows() == 0 || problem.terms() == 0)
+    throw Failure(ErrorWord::kBadUsage,
+                  "a fit needs rows and terms; there are " + std::to_string(problem.rows()) + " and " + std::to_string(problem.terms()));
+  if (problem.features.size() != problem.rows() * problem.terms())
+    throw Failure(ErrorWord::kInternal, "a fit of " + std::to_string(problem.rows()) + " rows and " + std::to_string(problem.terms()) +
+                                            " terms has " + std::to_string(problem.features.size()) + " features");
+  for (std::size_t i = 0; i < problem.rows(); ++i) {
+    if (!(problem.milliseconds[i] > 0.0) || std::isinf(problem.milliseconds[i]))
+      refuse(i, "its time in milliseconds, which must be positive and finite,", problem.milliseconds[i]);
+    for (std::size_t j = 0; j < problem.terms(); ++j)
+      if (const double value = problem.features[i * problem.terms() + j]; !(value >= 0.0) || std::isinf(value))
+        refuse(i, "feature " + std::to_string(j) + ", which must be finite and >= 0,", value);
+  }
+}
+
+std::vector<double> basin(const FitProblem& problem, const ScaledRows& all) {
+  std::vector<double> u = all.start();
+  const ScaledRows few = all.subset(spread_rows(problem, kBasinRows));
+  solve(few, {Loss::Kind::kConvex, kConvexScale}, 1e-4, u);
+  solve(few, {Loss::Kind::kRedescending, kLossScale}, 1e-5, u);
+  return u;
 }
 
 }  // namespace
 
-CostFit fit_costs(const std::vector<TimedFrame>& frames, const std::vector<std::size_t>& rows, const TermSet& terms,
-                  double first_pixel_cap_ms) {
-  const Coefficients unit = column_units(frames, rows);
-  Coefficients u{};
-  for (std::size_t i = 0; i < kTermCount; ++i) u[i] = terms[i] ? 1.0 / static_cast<double>(kTermCount) : 0.0;
-  CostFit fit;
-  fit.pixel_cap_ms = std::min(first_pixel_cap_ms, kNeverReached_ms);
-  // The first loss is convex where no cap bends the model, so the second, which all but ignores outliers, starts in the right basin.
-  ceres::SoftLOneLoss convex(0.2);
-  ceres::CauchyLoss redescending(0.1);
-  solve(frames, rows, terms, unit, 1e-4, &convex, u, fit.pixel_cap_ms);
-  fit.stopped = solve(frames, rows, terms, unit, 1e-14, &redescending, u, fit.pixel_cap_ms);
-  for (std::size_t i = 0; i < kTermCount; ++i) fit.milliseconds_per_unit[i] = u[i] * unit[i];
-  if (fit.pixel_cap_ms == kNeverReached_ms) fit.pixel_cap_ms = std::numeric_limits<double>::infinity();
-  return fit;
+FitResult fit_robustly(const FitProblem& problem, const FitOptions& options) {
+  check(problem);
+  const ScaledRows rows(problem, options.combination);
+  const Loss loss;
+  const NewtonFinish finish = newton_finish(rows, loss, basin(problem, rows), options.tolerance);
+  FitResult result;
+  result.converged = finish.converged;
+  result.stopped = finish.stopped;
+  result.objective = rows.objective(loss, finish.u.data());
+  for (std::size_t j = 0; j < problem.terms(); ++j) {
+    result.milliseconds_per_unit.push_back(finish.u[j] * rows.unit(j));
+    result.at_bound.push_back(rows.unit(j) > 0.0 && !(finish.u[j] > 0.0));
+  }
+  diagnose(rows, loss, finish.u, result);
+  return result;
+}
+
+std::vector<std::size_t> spread_rows(const FitProblem& problem, std::size_t count) {
+  std::vector<bool> chosen(problem.rows(), problem.rows() <= count);
+  const std::size_t share = count / (problem.terms() + 1);
+  const auto spread = [&](const std::vector<std::size_t>& rows) {
+    for (std::size_t k = 0; k < std::min(share, rows.size()); ++k) chosen[rows[k * rows.size() / std::min(share, rows.size())]] = true;
+  };
+  std::vector<std::size_t> rows(problem.rows());
+  for (std::size_t i = 0; i < rows.size(); ++i) rows[i] = i;
+  spread(rows);
+  for (std::size_t j = 0; j < problem.terms(); ++j) {
+    rows.clear();
+    for (std::size_t i = 0; i < problem.rows(); ++i)
+      if (problem.features[i * problem.terms() + j] > 0.0) rows.push_back(i);
+    spread(rows);
+  }
+  rows.clear();
+  for (std::size_t i = 0; i < problem.rows(); ++i)
+    if (chosen[i]) rows.push_back(i);
+  return rows;
+}
+
+bool gradients_agree(const FitProblem& problem, Combination combination, const std::vector<double>& milliseconds_per_unit,
+                     double relative) {
+  const ScaledRows rows(problem, combination);
+  std::vector<double> u(rows.terms(), 0.0);
+  for (std::size_t j = 0; j < u.size(); ++j)
+    if (rows.unit(j) > 0.0) u[j] = milliseconds_per_unit[j] / rows.unit(j);
+  ceres::NumericDiffOptions steps;
+  steps.ridders_relative_initial_step_size = 1e-3;  // well within the loss's scale
+  bool agree = true;
+  for (const Loss loss : {Loss{Loss::Kind::kConvex, kConvexScale}, Loss{Loss::Kind::kRedescending, kLossScale}}) {
+    const RobustResiduals residuals(rows, loss);
+    const std::vector<const ceres::Manifold*>* const no_manifolds = nullptr;
+    const ceres::GradientChecker checker(&residuals, no_manifolds, steps);
+    const double* block = u.data();
+    ceres::GradientChecker::ProbeResults results;
+    agree = checker.Probe(&block, relative, &results) && agree;
+  }
+  return agree;
 }
 
 }  // namespace standin

@@ -28,6 +28,7 @@ class Reader {
     if (found == json_.end()) fail("has no \"" + key + "\"");
     return *found;
   }
+  [[nodiscard]] bool has(const std::string& key) const { return json_.contains(key); }
   [[nodiscard]] Reader object(const std::string& key) const { return {member(key), place_ + "/" + key}; }
   [[nodiscard]] std::string text(const std::string& key) const {
     if (!member(key).is_string()) fail("\"" + key + "\" is not a string");
@@ -67,6 +68,14 @@ Json null_if_infinite(double number) {
   return std::isinf(number) ? Json(nullptr) : Json(number);
 }
 
+/// Files from before stages could overlap say nothing.
+Combination read_combination(const Reader& model) {
+  if (!model.has("combination")) return Combination::kSum;
+  const std::string word = model.text("combination");
+  if (word != "sum" && word != "max") model.fail("\"combination\" is \"" + word + "\", not \"sum\" or \"max\"");
+  return word == "sum" ? Combination::kSum : Combination::kMax;
+}
+
 std::vector<BoundStep> read_bound_steps(const Reader& model) {
   std::vector<BoundStep> steps;
   for (const Json& entry : model.array("bound_steps")) {
@@ -82,6 +91,7 @@ TimeModel read_model(const Reader& json) {
   TimeModel model;
   const Reader terms = json.object("milliseconds_per_unit");
   for (std::size_t i = 0; i < kTermCount; ++i) model.milliseconds_per_unit[i] = terms.number(std::string(term_name(static_cast<Term>(i))));
+  model.combination = read_combination(json);
   model.bound_steps = read_bound_steps(json);
   model.coverage = json.number("coverage");
   if (!(model.coverage > 0.0 && model.coverage < 1.0)) json.fail("\"coverage\" is not between 0 and 1");
@@ -94,6 +104,7 @@ Json model_json(const TimeModel& model) {
   Json steps = Json::array();
   for (const BoundStep& step : model.bound_steps) steps.push_back({{"until_ms", null_if_infinite(step.until_ms)}, {"factor", step.factor}});
   return {{"milliseconds_per_unit", terms},
+          {"combination", model.combination == Combination::kSum ? "sum" : "max"},
           {"bound_steps", steps},
           {"coverage", model.coverage}};
 }

@@ -15,6 +15,15 @@ Cost TimeModel::cost(const Features& features) const {
   return cost;
 }
 
+double TimeModel::predicted_ms(const Features& frame) const {
+  if (combination == Combination::kSum) return predicted_ms(cost(frame));
+  std::array<double, 3> of_stage{};
+  for (std::size_t i = 0; i < kTermCount; ++i)
+    of_stage[static_cast<std::size_t>(stage_of(static_cast<Term>(i)))] += milliseconds_per_unit[i] * frame.value[i];
+  const auto [shared, geometry, fill] = of_stage;
+  return shared + std::max(geometry, fill);
+}
+
 double TimeModel::predicted_ms(const Cost& frame) const {
   return frame.fixed_ms + frame.pixel_ms;
 }

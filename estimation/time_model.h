@@ -2,9 +2,10 @@
 // upper bound of stated coverage.
 //
 // The pixels of a frame's originals saturate, since near ones hide far ones (screen_coverage.h): a region's bound is the sum of all its
-// objects' terms, or that of all but pixels and as many of the costliest pixels as can pass. It must choose one of these linear forms beforehand, so Cost
-// keeps the two parts apart. The bound is a factor times the prediction, conformal (split by scene) and made monotone; inverted once, it
-// leaves placement a single predicted-time budget.
+// objects' terms, or of all terms but pixels and as many of the costliest pixels as can pass. It must choose one of these linear forms
+// beforehand, so Cost keeps the two parts apart. Where the machine overlaps its stages, a frame takes shared + max(geometry, fill) instead;
+// regions are then bounded by the stages' sum, which is never less (a second constraint a region would be tighter). The bound is a factor
+// times the prediction, conformal (split by scene) and made monotone; inverted once, it leaves placement a single predicted-time budget.
 #pragma once
 
 #include <array>
@@ -14,6 +15,7 @@
 #include <vector>
 
 #include "estimation/features.h"
+#include "estimation/stages.h"
 
 namespace standin {
 
@@ -37,10 +39,13 @@ struct BoundStep {
 
 struct TimeModel {
   std::array<double, kTermCount> milliseconds_per_unit{};  // >= 0
+  Combination combination = Combination::kSum;             // of the stages' times
   std::vector<BoundStep> bound_steps;
   double coverage = 0.99;  // stated, for frames exchangeable with the calibration set
 
   [[nodiscard]] Cost cost(const Features& features) const;
+  [[nodiscard]] double predicted_ms(const Features& frame) const;
+  /// The stages added up: an upper bound where they overlap.
   [[nodiscard]] double predicted_ms(const Cost& frame) const;
   /// The most that the pixels of a frame's originals may cost, of which at most `passed_pixels` pass.
   [[nodiscard]] double most_pixel_ms(double passed_pixels) const;

@@ -79,7 +79,7 @@ class Surveyor {
   }
 
   [[nodiscard]] double predict(const View& view, std::uint32_t cell) const {
-    return model_.predicted_ms(model_.cost(features_.frame(visible_from(cell), view)));
+    return model_.predicted_ms(features_.frame(visible_from(cell), view));
   }
 
   [[nodiscard]] SurveyedView survey_view(const View& view, std::uint32_t cell) const { return {view, cell, predict(view, cell)}; }

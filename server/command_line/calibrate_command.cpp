@@ -3,6 +3,7 @@
 #include <iostream>
 
 #include "estimation/samples_file.h"
+#include "estimation/self_test.h"
 #include "render/base/error.h"
 #include "render/device/fingerprint.h"
 #include "render/scene/city.h"
@@ -66,6 +67,16 @@ Target make_target(const FitSummary& fit, const Machine& machine) {
   return target;
 }
 
+json terms_json(const std::vector<FittedTerm>& terms) {
+  json list = json::array();
+  for (const auto& term : terms)
+    list.push_back({{"name", term.name},
+                    {"milliseconds_per_unit", term.milliseconds_per_unit},
+                    {"relative_standard_error", term.relative_standard_error ? json(*term.relative_standard_error) : json()},
+                    {"at_bound", term.at_bound}});
+  return list;
+}
+
 json fit_json(const FitSummary& fit) {
   json terms = json::object();
   for (std::size_t i = 0; i < kTermCount; ++i) terms[std::string(term_name(static_cast<Term>(i)))] = fit.model.milliseconds_per_unit[i];
@@ -76,14 +87,24 @@ json fit_json(const FitSummary& fit) {
           {"coverage", fit.measured_coverage},
           {"bound_over_measured_median", fit.bound_over_measured_median},
           {"milliseconds_per_unit", terms},
-          {"left_out", fit.left_out}};
+          {"combination", fit.model.combination == Combination::kSum ? "sum" : "max"},
+          {"sum_error", fit.sum_error},
+          {"max_error", fit.max_error},
+          {"condition_number", std::isfinite(fit.condition_number) ? json(fit.condition_number) : json()},
+          {"terms", terms_json(fit.terms)},
+          {"left_out", fit.left_out},
+          {"warnings", fit.warnings}};
 }
 
 void print_fit(const FitSummary& fit) {
   std::printf(
       "%u frames; held out: median error %.1f %%, p90 %.1f %%, the bound covers %.2f %% and is %.2fx the measured time at the median\n",
       fit.frames, 100 * fit.median_error, 100 * fit.p90_error, 100 * fit.measured_coverage, fit.bound_over_measured_median);
+  if (fit.model.combination == Combination::kMax)
+    std::printf("geometry and fill overlap: the error is %.1f %% where they add up, %.1f %% where the longer one counts\n",
+                100 * fit.sum_error, 100 * fit.max_error);
   for (const auto& reason : fit.left_out) std::printf("  left out: %s\n", reason.c_str());
+  for (const auto& warning : fit.warnings) std::printf("  warning: %s\n", warning.c_str());
 }
 
 // Each term in units of another, for people.
@@ -116,12 +137,30 @@ int evaluate_target(const CommandContext& context) {
   return result.coverage >= target.model.coverage ? 0 : 1;
 }
 
+// A table for people (Markdown), or JSON.
+int self_test(bool as_json) {
+  json rows = json::array();
+  std::size_t failed = 0;
+  if (!as_json) std::printf("| case | expected | got | |\n|---|---|---|---|\n");
+  for (const auto& test_case : self_test_cases()) {
+    const SelfTestOutcome outcome = run_self_test(test_case);
+    failed += outcome.passed ? 0 : 1;
+    rows.push_back({{"name", test_case.name}, {"expected", test_case.expected}, {"got", outcome.got}, {"passed", outcome.passed}});
+    if (!as_json)
+      std::printf("| %s | %s | %s | %s |\n", test_case.name.c_str(), test_case.expected.c_str(), outcome.got.c_str(),
+                  outcome.passed ? "ok" : "FAILED");
+  }
+  if (as_json) std::cout << json({{"cases", rows}, {"passed", rows.size() - failed}, {"failed", failed}}).dump(2) << "\n";
+  return failed == 0 ? 0 : 1;
+}
+
 }  // namespace
 
 int calibrate_command(const CommandContext& context) {
   const CommandArguments& arguments = context.arguments;
+  if (arguments.self_test) return self_test(arguments.json);
   if (arguments.evaluate.empty() && arguments.output.empty())
-    throw Failure(ErrorWord::kBadUsage, "calibrate needs -o FILE, or --evaluate FILE");
+    throw Failure(ErrorWord::kBadUsage, "calibrate needs -o FILE, --evaluate FILE or --self-test");
   CalibrationSamples samples;
   if (!arguments.refit.empty()) {
     samples = read_samples(arguments.refit);

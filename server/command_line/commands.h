@@ -30,6 +30,7 @@ struct CommandArguments {
   std::uint32_t judged_views = 500;  // verify
   bool json = false;
   bool explain = false;
+  bool self_test = false;
 };
 
 struct CommandContext {

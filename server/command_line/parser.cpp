@@ -110,6 +110,11 @@ void add_input_commands(Grammar& grammar) {
   calibrate.app.add_option("--refit", calibrate.arguments().refit, "fit the frames of this file instead of timing any")
       ->excludes("--evaluate")
       ->excludes("--samples");
+  calibrate.app
+      .add_flag("--self-test", calibrate.arguments().self_test, "run the fit on stiff and extreme data, print a table; times nothing")
+      ->excludes("--evaluate")
+      ->excludes("--samples")
+      ->excludes("--refit");
   calibrate.app.add_flag("--explain", calibrate.arguments().explain, "say what each term costs, in words");
   calibrate.spec_flags(kTimingSections);
   calibrate.output("target file", false);

@@ -34,7 +34,7 @@ Features FrameEstimator::features(const View& view, const std::vector<std::uint3
 double FrameEstimator::predicted_ms(const View& view, const DrawList& list) const {
   Features frame = table_.frame(list.objects, view);
   frame += features(view, list.impostors);
-  return model_.predicted_ms(model_.cost(frame));
+  return model_.predicted_ms(frame);
 }
 
 }  // namespace standin

@@ -6,8 +6,8 @@ import test from "node:test";
 import { expectExit, readJson, scratch } from "./standin.mjs";
 
 const folder = scratch();
-const kTerms = ["frame", "draws", "texture_switches", "triangles", "on_screen_triangles", "covering_triangles", "plain_pixels", "textured_pixels",
-                "masked_pixels", "impostor_pixels"];
+const kTerms = ["frame", "draws", "texture_switches", "triangles", "on_screen_triangles", "edge_pixels", "plain_pixels", "textured_pixels",
+                "masked_pixels", "impostor_quads", "impostor_pixels"];
 // About what an empty frame, a draw and a triangle cost; nothing else costs anything.
 const kCosts = { frame: 0.3, draws: 0.004, triangles: 3e-5 };
 

@@ -52,9 +52,8 @@ TEST(ImpostorFeatures, OfASquareSeenFromTheReferenceViewpoint) {
   const double expected = std::pow(0.16 * kCamera.focal_px(), 2);
   EXPECT_NEAR(features[Term::kImpostorPixels], expected, 0.01 * expected);
   EXPECT_EQ(features[Term::kDraws], 1.0);
-  EXPECT_EQ(features[Term::kTriangles], 2.0);
-  EXPECT_EQ(features[Term::kOnScreenTriangles], 2.0);
-  EXPECT_EQ(features[Term::kCoveringTriangles], 2.0);
+  EXPECT_EQ(features[Term::kImpostorQuads], 1.0);
+  EXPECT_EQ(features[Term::kTriangles], 0.0);
   EXPECT_EQ(features[Term::kTextureSwitches], 0.0);
   const Features behind = impostor_features(impostor, bounds, {Vec3(0.0), Vec3(0.0, 0.0, 1.0)}, kCamera);
   for (const double value : behind.value) EXPECT_EQ(value, 0.0);

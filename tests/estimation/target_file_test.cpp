@@ -33,7 +33,7 @@ Target some_target() {
   Target target;
   target.id = "osmesa-llvmpipe";
   for (std::size_t i = 0; i < kTermCount; ++i) target.model.milliseconds_per_unit[i] = 0.1 / static_cast<double>(i + 3);
-  target.model.pixel_cap_ms = std::numeric_limits<double>::infinity();
+  target.model.combination = Combination::kMax;
   target.model.bound_steps = {{1.0 / 3.0, 2.0}, {std::numeric_limits<double>::infinity(), 1.1}};
   target.model.coverage = 0.99;
   target.machine.device = "osmesa";
@@ -71,7 +71,7 @@ TEST_F(TargetFile, ComesBackBitForBit) {
   write_target(written, file());
   const Target read = read_target(file());
   EXPECT_EQ(read.model.milliseconds_per_unit, written.model.milliseconds_per_unit);
-  EXPECT_EQ(read.model.pixel_cap_ms, written.model.pixel_cap_ms);
+  EXPECT_EQ(read.model.combination, written.model.combination);
   ASSERT_EQ(read.model.bound_steps.size(), 2U);
   EXPECT_EQ(read.model.bound_steps[0].until_ms, written.model.bound_steps[0].until_ms);
   EXPECT_EQ(read.model.bound_steps[1].until_ms, written.model.bound_steps[1].until_ms);
@@ -89,6 +89,11 @@ TEST_F(TargetFile, ComesBackBitForBit) {
   EXPECT_EQ(read.measured_coverage, written.measured_coverage);
   EXPECT_EQ(read.left_out, written.left_out);
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_), {}), 1) << "nothing is left beside it";
+}
+
+TEST_F(TargetFile, WithoutAWordOnStagesTheyAddUp) {
+  EXPECT_FALSE(failure_after([](auto& json) { json["model"].erase("combination"); }));
+  EXPECT_EQ(read_target(file()).model.combination, Combination::kSum);
 }
 
 TEST_F(TargetFile, SameTargetSameBytesSameDigest) {
@@ -130,7 +135,7 @@ TEST_F(TargetFile, WithABadValueIsRefusedNamingIt) {
       {"draws", [](auto& json) { json["model"]["milliseconds_per_unit"]["draws"] = "1"; }},
       {"masked_pixels", [](auto& json) { json["model"]["milliseconds_per_unit"].erase("masked_pixels"); }},
       {"milliseconds_per_unit", [](auto& json) { json["model"]["milliseconds_per_unit"] = 3; }},
-      {"pixel_cap_ms", [](auto& json) { json["model"]["pixel_cap_ms"] = -2; }},
+      {"combination", [](auto& json) { json["model"]["combination"] = "product"; }},
       {"bound_steps", [](auto& json) { json["model"]["bound_steps"] = nlohmann::json::array(); }},
       {"bound_steps", [](auto& json) { json["model"]["bound_steps"][1]["until_ms"] = 9; }},
       {"bound_steps", [](auto& json) { json["model"]["bound_steps"] = nlohmann::json::object(); }},

@@ -87,16 +87,14 @@ inline constexpr double kSquare_m = 10.0;
 [[nodiscard]] inline TimeModel triangle_time_model() {
   TimeModel model;
   model.milliseconds_per_unit[static_cast<std::size_t>(Term::kTriangles)] = 0.001;
-  model.pixel_cap_ms = std::numeric_limits<double>::infinity();
   return model;
 }
 
-/// Every term costs something, and pixels are capped.
+/// Every term costs something.
 [[nodiscard]] inline TimeModel full_time_model() {
   TimeModel model;
   for (std::size_t term = 0; term < kTermCount; ++term)
     model.milliseconds_per_unit[term] = is_pixel_term(static_cast<Term>(term)) ? 20e-6 : 0.0005 * static_cast<double>(term + 1);
-  model.pixel_cap_ms = 5.0;
   return model;
 }
 

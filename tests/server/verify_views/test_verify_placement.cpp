@@ -17,7 +17,6 @@ using testing::HasSubstr;
 Target one_ms_per_triangle() {
   Target target;
   target.model.milliseconds_per_unit[static_cast<std::size_t>(Term::kTriangles)] = 1.0;
-  target.model.pixel_cap_ms = 1e9;
   return target;
 }
 
