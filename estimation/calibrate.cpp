@@ -15,7 +15,6 @@
 namespace standin {
 namespace {
 
-constexpr std::size_t kLeastFrames = 20;
 // A column counts as a combination of others where less than this share of its length is its own.
 constexpr double kOwnShare = 1e-6;
 
@@ -100,9 +99,12 @@ void check_input(const std::vector<TimedFrame>& frames, double coverage) {
   if (!(coverage > 0.0 && coverage < 1.0))
     throw Failure(ErrorWord::kBadUsage, "coverage is " + std::to_string(coverage) + "; it must lie between 0 and 1");
   check_frames(frames);
-  if (frames.size() < kLeastFrames)
-    throw Failure(ErrorWord::kBadUsage, "the time model needs at least " + std::to_string(kLeastFrames) + " timed frames, there are " +
-                                            std::to_string(frames.size()));
+  const std::size_t steady = steady_frames(frames).size();
+  if (steady >= kLeastFrames) return;
+  const std::size_t unsteady = frames.size() - steady;
+  throw Failure(ErrorWord::kBadUsage,
+                "the time model needs at least " + std::to_string(kLeastFrames) + " timed frames, there are " + std::to_string(steady) +
+                    (unsteady > 0 ? " and " + std::to_string(unsteady) + " whose repeats disagree by more than a fifth" : ""));
 }
 
 void fill_quality(const std::vector<HeldOut>& held_out, const std::vector<Rows>& folds, double coverage, FitSummary& summary) {
@@ -116,9 +118,18 @@ void fill_quality(const std::vector<HeldOut>& held_out, const std::vector<Rows>&
 
 }  // namespace
 
-FitSummary fit_time_model(const std::vector<TimedFrame>& frames, double coverage) {
-  check_input(frames, coverage);
+std::vector<TimedFrame> steady_frames(const std::vector<TimedFrame>& frames) {
+  std::vector<TimedFrame> steady;
+  for (const TimedFrame& frame : frames)
+    if (frame.spread <= kMostSpread) steady.push_back(frame);
+  return steady;
+}
+
+FitSummary fit_time_model(const std::vector<TimedFrame>& all_frames, double coverage) {
+  check_input(all_frames, coverage);
+  const std::vector<TimedFrame> frames = steady_frames(all_frames);
   FitSummary summary;
+  summary.unsteady_frames = static_cast<std::uint32_t>(all_frames.size() - frames.size());
   const FormChoice choice = choose_form(frames, supported_terms(frames, summary.left_out));
   const FittedForm fitted = fit_form(frames, all_rows(frames.size()), choice.form);
   const std::vector<Rows> folds = folds_of(frames);

@@ -3,7 +3,9 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -18,22 +20,39 @@ struct TimedFrame {
   Features features;  // estimate for its view
   double milliseconds = 0.0;
   std::uint32_t group = 0;
+  // For diagnosis; the fit asks for the spread alone.
+  double spread = 0.0;         // of the repeats, relative
+  double seconds = 0.0;        // of timed renders so far, since the calibration began
+  double passed_pixels = 0.0;  // counted by the device, where that was asked for
 };
 
-/// Repeats a sample that the caller's timer is asked for: fewer than a verification's, since many rough samples teach a fit more than few
-/// exact ones.
+/// Frames whose repeats disagree by more are not fitted; they are counted.
+inline constexpr double kMostSpread = 0.2;
+[[nodiscard]] std::vector<TimedFrame> steady_frames(const std::vector<TimedFrame>& frames);
+
+/// Fewer steady frames are not fitted.
+inline constexpr std::size_t kLeastFrames = 20;
+
+/// What the caller's timer is to do for each sample: fewer repeats than a verification's, and no warm-up, whose place the first repeat takes
+/// (the median forgets it), since many rough samples teach a fit more than few exact ones.
 inline constexpr int kCalibrationRepeats = 3;
+inline constexpr int kCalibrationWarmUp = 0;
 
 struct CalibrationOptions {
-  double seconds = 45.0;  // of timed renders, in each call of sample_frames (baking and set-up not counted)
-  double coverage = 0.99;
+  double seconds = 45.0;  // of timed renders (baking and set-up not counted)
   std::uint64_t seed = 1;
+  bool count_passed_pixels = false;
 };
 
-/// Timed frames of one scene: clusters, whole frames (with and without impostors). The context must be current. Which frames are timed
-/// depends on the seed alone; fewer seconds stop earlier.
-[[nodiscard]] std::vector<TimedFrame> sample_frames(const Scene& scene, std::uint32_t group, Context& context, FrameTimer& timer,
-                                                    const Camera& camera, const CalibrationOptions& options, const WorkBudget& budget);
+/// Seconds after which a calibration may look at what it has: multiples of this.
+inline constexpr double kLookEvery_s = 5.0;
+/// Asked then; true ends the calibration.
+using Enough = std::function<bool(const std::vector<TimedFrame>&)>;
+
+/// Timed frames of the scenes, taking turns (group: index of the scene): clusters, whole frames, with and without impostors. The context must be
+/// current. Which frames are timed depends on the seed alone; fewer seconds stop earlier.
+[[nodiscard]] std::vector<TimedFrame> sample_frames(std::span<const Scene> scenes, Context& context, FrameTimer& timer, const Camera& camera,
+                                                    const CalibrationOptions& options, const Enough& enough, const WorkBudget& budget);
 
 /// A term that takes part in the fit.
 struct FittedTerm {
@@ -51,7 +70,8 @@ struct FitSummary {
   double sum_error = 0.0;  // mean held-out error where the stages' times add up, and where they overlap: model.combination is the choice
   double max_error = 0.0;
   std::uint32_t frames = 0;
-  double median_error = 0.0;  // held out, relative
+  std::uint32_t unsteady_frames = 0;  // not fitted: kMostSpread
+  double median_error = 0.0;          // held out, relative
   double p90_error = 0.0;
   double measured_coverage = 0.0;  // held out
   double bound_over_measured_median = 0.0;
@@ -62,8 +82,12 @@ struct FitSummary {
 /// Deterministic. Terms the frames cannot support are dropped and named. Stages add up unless the held-out error speaks for an overlap
 /// (held_out.h). Errors and bound are those on frames held out: scene by scene, or in five random folds where there is one scene only (or
 /// one that no other can stand in for). Throws Failure(kBadUsage) naming the row for a time that is not finite and positive, or when there
-/// are too few frames.
+/// are too few steady frames.
 [[nodiscard]] FitSummary fit_time_model(const std::vector<TimedFrame>& frames, double coverage);
+
+/// Frames that the bound may miss, of so many, before they speak against the stated coverage: more misses would come about in at most one
+/// case of twenty (one-sided binomial test).
+[[nodiscard]] std::uint32_t most_misses(std::uint32_t frames, double coverage);
 
 /// How a model does on frames it has not seen (calibrate --evaluate).
 struct Evaluation {

@@ -49,7 +49,22 @@ Evaluation summarise(const std::vector<HeldOut>& frames, const std::vector<doubl
   return result;
 }
 
-Evaluation evaluate(const TimeModel& model, const std::vector<TimedFrame>& frames) {
+std::uint32_t most_misses(std::uint32_t frames, double coverage) {
+  constexpr double kRare = 0.05;
+  // Terms of the binomial distribution from none up, in logarithms: (1 - p)^n alone may be too small for a double.
+  const double n = frames;
+  double tail = 1.0;
+  for (std::uint32_t misses = 0; misses < frames; ++misses) {
+    const double k = misses;
+    tail -= std::exp(std::lgamma(n + 1.0) - std::lgamma(k + 1.0) - std::lgamma(n - k + 1.0) + k * std::log1p(-coverage) +
+                     (n - k) * std::log(coverage));
+    if (tail <= kRare) return misses;
+  }
+  return frames;
+}
+
+Evaluation evaluate(const TimeModel& model, const std::vector<TimedFrame>& all_frames) {
+  const std::vector<TimedFrame> frames = steady_frames(all_frames);
   if (frames.empty()) throw Failure(ErrorWord::kBadUsage, "no timed frame to evaluate the time model on");
   check_frames(frames);
   std::vector<HeldOut> held_out;

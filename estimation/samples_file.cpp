@@ -12,7 +12,9 @@
 namespace standin {
 namespace {
 
-constexpr std::string_view kFormat = "# standin.samples 1";
+constexpr std::string_view kFormat = "# standin.samples 2";
+
+constexpr std::size_t kOwnColumns = 5;  // before the features
 
 std::string text_of(double value) {
   char text[32];
@@ -27,7 +29,7 @@ std::string one_line(std::string text) {
 }
 
 std::string header() {
-  std::string row = "group,milliseconds";
+  std::string row = "group,milliseconds,spread,seconds,passed_pixels";
   for (std::size_t i = 0; i < kTermCount; ++i) row += "," + std::string(term_name(static_cast<Term>(i)));
   return row;
 }
@@ -84,12 +86,15 @@ std::vector<std::string_view> split(std::string_view row) {
 
 TimedFrame read_frame(const Lines& lines, std::string_view row) {
   const auto cells = split(row);
-  if (cells.size() != kTermCount + 2)
-    lines.fail(std::to_string(cells.size()) + " columns violate: " + std::to_string(kTermCount + 2) + ", as in the header");
+  if (cells.size() != kTermCount + kOwnColumns)
+    lines.fail(std::to_string(cells.size()) + " columns violate: " + std::to_string(kTermCount + kOwnColumns) + ", as in the header");
   TimedFrame frame;
   frame.group = read_number<std::uint32_t>(lines, cells[0]);
   frame.milliseconds = read_number<double>(lines, cells[1]);
-  for (std::size_t i = 0; i < kTermCount; ++i) frame.features.value[i] = read_number<double>(lines, cells[i + 2]);
+  frame.spread = read_number<double>(lines, cells[2]);
+  frame.seconds = read_number<double>(lines, cells[3]);
+  frame.passed_pixels = read_number<double>(lines, cells[4]);
+  for (std::size_t i = 0; i < kTermCount; ++i) frame.features.value[i] = read_number<double>(lines, cells[i + kOwnColumns]);
   return frame;
 }
 
@@ -99,9 +104,10 @@ void write_samples(const CalibrationSamples& samples, const std::filesystem::pat
   const Machine& machine = samples.machine;
   std::string text = std::string(kFormat) + "\n# device: " + one_line(machine.device) + "\n# renderer: " + one_line(machine.renderer) +
                      "\n# gl_version: " + one_line(machine.gl_version) + "\n# processor: " + one_line(machine.processor) +
-                     "\n# reference_ms: " + text_of(machine.reference_ms) + "\n" + header() + "\n";
+                     "\n# reference_ms: " + text_of(machine.reference_ms) + "\n# clock: " + one_line(machine.clock) + "\n" + header() + "\n";
   for (const TimedFrame& frame : samples.frames) {
-    text += std::to_string(frame.group) + "," + text_of(frame.milliseconds);
+    text += std::to_string(frame.group);
+    for (const double value : {frame.milliseconds, frame.spread, frame.seconds, frame.passed_pixels}) text += "," + text_of(value);
     for (const double value : frame.features.value) text += "," + text_of(value);
     text += "\n";
   }
@@ -118,6 +124,7 @@ CalibrationSamples read_samples(const std::filesystem::path& file) {
   samples.machine.gl_version = read_value(lines, "gl_version");
   samples.machine.processor = read_value(lines, "processor");
   samples.machine.reference_ms = read_number<double>(lines, read_value(lines, "reference_ms"));
+  samples.machine.clock = read_value(lines, "clock");
   if (const std::string_view row = lines.next(); row != header()) lines.fail("the header violates: is \"" + header() + "\"");
   while (!lines.at_end()) samples.frames.push_back(read_frame(lines, lines.next()));
   return samples;

@@ -4,6 +4,7 @@
 // frames' times.
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <optional>
 
 #include "estimation/calibrate.h"
@@ -23,6 +24,7 @@ constexpr std::size_t kImpostors = 8;
 constexpr int kImpostorAttempts = 40;
 constexpr std::uint64_t kMaxBakedTriangles = 30'000;  // baking is not what the seconds are for
 constexpr double kEyeHeight_m = 1.7;
+constexpr std::size_t kWarmUpFrames = 8;  // one of each kind: compiles the shaders
 
 double log_uniform(Rng& rng, double low, double high) {
   return low * std::pow(high / low, rng.uniform());
@@ -122,15 +124,15 @@ class FrameSampler {
     return {view_towards(rng_, eye, node.bounds.centre(), camera_), {objects_of(node), {}}};
   }
 
-  /// Upright, at eye height above the scene's floor or anywhere in its height, if possible in no object's bounds but large flat ones.
+  /// Upright, at eye height above the scene's floor or anywhere in its height, in no object's bounds but large flat ones; from around the
+  /// scene where there is no such place, as in a single object.
   [[nodiscard]] View street_view() {
     Box eyes = scene_.bounds;
     if (rng_.uniform() < 0.7) eyes.min.y = eyes.max.y = eyes.min.y + kEyeHeight_m;
-    View view;
-    view.position = random_point(rng_, eyes);
-    for (int attempt = 0; attempt < 32 && inside_an_object(view.position); ++attempt) view.position = random_point(rng_, eyes);
-    view.direction = random_direction(rng_, -0.25, 0.25);
-    return view;
+    for (int attempt = 0; attempt < 32; ++attempt)
+      if (const Vec3 position = random_point(rng_, eyes); !inside_an_object(position))
+        return {position, random_direction(rng_, -0.25, 0.25)};
+    return orbit_view();
   }
 
   [[nodiscard]] bool inside_an_object(const Vec3& position) const {
@@ -214,22 +216,57 @@ class FrameSampler {
   std::vector<Box> impostor_bounds_;
 };
 
+/// A scene that is timed.
+class Source {
+ public:
+  Source(const Scene& scene, Context& context, const Camera& camera, std::uint64_t seed, const WorkBudget& budget)
+      : sampler_(scene, camera, seed, budget), renderer_(context, scene, camera), size_(std::sqrt(1.0 + scene.triangle_count())) {
+    renderer_.upload(sampler_.impostors());
+    for (std::size_t frame = 0; frame < kWarmUpFrames; ++frame) draw(sampler_.setup(frame));
+  }
+
+  /// How much of a calibration the source's frames so far are worth: large scenes take their turn less often, their frames take longer.
+  [[nodiscard]] double share() const { return static_cast<double>(frames_) * size_; }
+
+  /// The source's next frame, timed.
+  [[nodiscard]] TimedFrame next(FrameTimer& timer, bool count_passed_pixels) {
+    const Setup setup = sampler_.setup(frames_++);
+    const FrameSample sample = timer.time(renderer_, setup.view, setup.list);
+    TimedFrame frame{.features = sampler_.features(setup), .milliseconds = sample.milliseconds, .spread = sample.spread};
+    frame.seconds = 1e-3 * kCalibrationRepeats * (sample.raw_milliseconds + timer.reference_ms());
+    if (count_passed_pixels) frame.passed_pixels = static_cast<double>(renderer_.count_passed_pixels(setup.view, setup.list));
+    return frame;
+  }
+
+ private:
+  void draw(const Setup& setup) { renderer_.draw(setup.view, setup.list); }
+
+  FrameSampler sampler_;
+  Renderer renderer_;
+  double size_;
+  std::size_t frames_ = 0;
+};
+
 }  // namespace
 
-std::vector<TimedFrame> sample_frames(const Scene& scene, std::uint32_t group, Context& context, FrameTimer& timer, const Camera& camera,
-                                      const CalibrationOptions& options, const WorkBudget& budget) {
+std::vector<TimedFrame> sample_frames(std::span<const Scene> scenes, Context& context, FrameTimer& timer, const Camera& camera,
+                                      const CalibrationOptions& options, const Enough& enough, const WorkBudget& budget) {
   if (!(options.seconds > 0.0)) throw Failure(ErrorWord::kBadUsage, "calibration seconds are " + std::to_string(options.seconds));
-  FrameSampler sampler(scene, camera, options.seed, budget);
-  Renderer renderer(context, scene, camera);
-  renderer.upload(sampler.impostors());
+  if (scenes.empty()) throw Failure(ErrorWord::kBadUsage, "calibration: no scene to time");
+  std::deque<Source> sources;
+  for (const Scene& scene : scenes) sources.emplace_back(scene, context, camera, options.seed, budget);
   std::vector<TimedFrame> frames;
-  for (double spent_ms = 0.0; spent_ms < 1e3 * options.seconds && frames.size() < kMaxFrames;) {
+  double spent_s = 0.0, next_look_s = kLookEvery_s;
+  while (spent_s < options.seconds && frames.size() < kMaxFrames * scenes.size()) {
     budget.check();
-    budget.report("calibrate", spent_ms / (1e3 * options.seconds));
-    const Setup setup = sampler.setup(frames.size());
-    const FrameSample sample = timer.time(renderer, setup.view, setup.list);
-    spent_ms += (kCalibrationRepeats + 1) * sample.raw_milliseconds + kCalibrationRepeats * timer.reference_ms();
-    frames.push_back({sampler.features(setup), sample.milliseconds, group});
+    budget.report("calibrate", spent_s / options.seconds);
+    const auto source = std::min_element(sources.begin(), sources.end(), [](const Source& a, const Source& b) { return a.share() < b.share(); });
+    frames.push_back(source->next(timer, options.count_passed_pixels));
+    frames.back().group = static_cast<std::uint32_t>(source - sources.begin());
+    frames.back().seconds = spent_s += frames.back().seconds;
+    if (spent_s < next_look_s) continue;
+    next_look_s += kLookEvery_s;
+    if (enough && enough(frames)) break;
   }
   return frames;
 }

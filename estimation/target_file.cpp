@@ -109,6 +109,32 @@ Json model_json(const TimeModel& model) {
           {"coverage", model.coverage}};
 }
 
+std::uint32_t count_of(const Reader& json, const std::string& key) {
+  return static_cast<std::uint32_t>(std::min(json.number(key), 4294967295.0));
+}
+
+std::vector<LearningPoint> read_learning_curve(const Reader& quality) {
+  std::vector<LearningPoint> curve;
+  for (const Json& entry : quality.array("learning_curve")) {
+    const Reader point(entry, quality.place() + "/learning_curve/" + std::to_string(curve.size()));
+    curve.push_back({point.number("seconds"), count_of(point, "frames"), point.number("median_error"), point.number("p90_error"),
+                     point.number("coverage"), point.number("bound_over_measured_median")});
+  }
+  return curve;
+}
+
+Json learning_curve_json(const std::vector<LearningPoint>& curve) {
+  Json list = Json::array();
+  for (const LearningPoint& point : curve)
+    list.push_back({{"seconds", point.seconds},
+                    {"frames", point.frames},
+                    {"median_error", point.median_error},
+                    {"p90_error", point.p90_error},
+                    {"coverage", point.coverage},
+                    {"bound_over_measured_median", point.bound_over_measured_median}});
+  return list;
+}
+
 void check_format(const Json& json, const std::filesystem::path& file) {
   const Json format = json.is_object() ? json.value("format", Json()) : Json();
   const Json version = json.is_object() ? json.value("version", Json()) : Json();
@@ -143,12 +169,16 @@ Target read_target(const std::filesystem::path& file) {
   target.machine.gl_version = machine.text("gl_version");
   target.machine.processor = machine.text("processor");
   target.machine.reference_ms = machine.number("reference_ms");
+  target.machine.clock = machine.text("clock");
+  if (target.machine.clock != "thread_cpu" && target.machine.clock != "wall")
+    machine.fail("\"clock\" is \"" + target.machine.clock + "\", not thread_cpu or wall");
   const Reader quality = root.object("quality");
-  target.samples = static_cast<std::uint32_t>(std::min(quality.number("samples"), 4294967295.0));
+  target.samples = count_of(quality, "samples");
   target.median_error = quality.number("median_error");
   target.p90_error = quality.number("p90_error");
   target.measured_coverage = quality.number("measured_coverage");
   target.left_out = quality.texts("left_out");
+  target.learning_curve = read_learning_curve(quality);
   return target;
 }
 
@@ -161,14 +191,16 @@ void write_target(const Target& target, const std::filesystem::path& file) {
                        {"renderer", target.machine.renderer},
                        {"gl_version", target.machine.gl_version},
                        {"processor", target.machine.processor},
-                       {"reference_ms", target.machine.reference_ms}}},
+                       {"reference_ms", target.machine.reference_ms},
+                       {"clock", target.machine.clock}}},
                      {"model", model_json(target.model)},
                      {"quality",
                       {{"samples", target.samples},
                        {"median_error", target.median_error},
                        {"p90_error", target.p90_error},
                        {"measured_coverage", target.measured_coverage},
-                       {"left_out", target.left_out}}}};
+                       {"left_out", target.left_out},
+                       {"learning_curve", learning_curve_json(target.learning_curve)}}}};
   write_file(file, json.dump(2) + '\n');
 }
 

@@ -62,6 +62,17 @@ struct Machine {
   std::string gl_version;
   std::string processor;      // model name; another one is a warning only
   double reference_ms = 0.0;  // reference frame at calibration
+  std::string clock = "thread_cpu";  // or "wall", of a device that does not work in the calling thread
+};
+
+/// How well a calibration would have done with its first seconds (learning_curve.h).
+struct LearningPoint {
+  double seconds = 0.0;
+  std::uint32_t frames = 0;
+  double median_error = 0.0;  // held out, relative, as are the others
+  double p90_error = 0.0;
+  double coverage = 0.0;
+  double bound_over_measured_median = 0.0;
 };
 
 /// A target file (JSON): the model, the machine it was measured on, and how well it did.
@@ -76,6 +87,7 @@ struct Target {
   double p90_error = 0.0;
   double measured_coverage = 0.0;
   std::vector<std::string> left_out;  // terms the data could not support, with the reason
+  std::vector<LearningPoint> learning_curve;
 };
 
 /// Throws Failure(kFileMissing, kFileBroken, kTargetUnreadable).

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <ctime>
-#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -28,36 +27,39 @@ Duration measure(const Draw& draw) {
   return {.cpu_ms = clock_ms(CLOCK_THREAD_CPUTIME_ID) - cpu_ms, .wall_ms = clock_ms(CLOCK_MONOTONIC) - wall_ms};
 }
 
-double least_reference_ms(ReferenceFrame& reference) {
+std::vector<Duration> first_durations(ReferenceFrame& reference) {
   constexpr int kDraws = 50;  // 0.15 s
   reference.draw();           // compiles
-  double least_ms = std::numeric_limits<double>::infinity();
-  for (int i = 0; i < kDraws; ++i) least_ms = std::min(least_ms, measure([&] { reference.draw(); }).cpu_ms);
-  return least_ms;
+  std::vector<Duration> durations;
+  for (int i = 0; i < kDraws; ++i) durations.push_back(measure([&] { reference.draw(); }));
+  return durations;
 }
 
-class CpuFrameTimer final : public FrameTimer {
+class DeviceFrameTimer final : public FrameTimer {
  public:
-  CpuFrameTimer(Context& context, const TimingProtocol& protocol) : protocol_(protocol), reference_(context) {
-    const double now_ms = least_reference_ms(reference_);
-    if (protocol_.reference_ms == 0.0) protocol_.reference_ms = now_ms;
+  DeviceFrameTimer(Context& context, const TimingProtocol& protocol) : protocol_(protocol), reference_(context) {
+    const std::vector<Duration> durations = first_durations(reference_);
+    clock_ = protocol.clock.value_or(fitting_clock(durations));
+    if (protocol_.reference_ms == 0.0) protocol_.reference_ms = least_ms(durations, clock_);
   }
 
   [[nodiscard]] FrameSample time(Renderer& renderer, const View& view, const DrawList& list) override {
     for (int i = 0; i < protocol_.warm_up; ++i) renderer.draw(view, list);
     std::vector<Repeat> repeats;
     while (needs_another(repeats, protocol_.repeats)) {
-      const Duration reference = measure([&] { reference_.draw(); });
-      repeats.push_back({.reference = reference, .frame = measure([&] { renderer.draw(view, list); })});
+      const Duration reference = on_clock(measure([&] { reference_.draw(); }), clock_);
+      repeats.push_back({.reference = reference, .frame = on_clock(measure([&] { renderer.draw(view, list); }), clock_)});
     }
     return summarise(repeats, protocol_.reference_ms);
   }
 
   [[nodiscard]] double reference_ms() const override { return protocol_.reference_ms; }
+  [[nodiscard]] Clock clock() const override { return clock_; }
 
  private:
   TimingProtocol protocol_;
   ReferenceFrame reference_;
+  Clock clock_ = Clock::kThreadCpu;
 };
 
 class FakeFrameTimer final : public FrameTimer {
@@ -69,6 +71,7 @@ class FakeFrameTimer final : public FrameTimer {
     return {.milliseconds = ms, .raw_milliseconds = ms, .spread = 0.0, .rejected = 0};
   }
   [[nodiscard]] double reference_ms() const override { return 1.0; }
+  [[nodiscard]] Clock clock() const override { return Clock::kThreadCpu; }
 
  private:
   std::function<double(const FrameCounts&)> milliseconds_;
@@ -76,13 +79,23 @@ class FakeFrameTimer final : public FrameTimer {
 
 }  // namespace
 
-std::unique_ptr<FrameTimer> make_cpu_frame_timer(Context& context, const TimingProtocol& protocol) {
+std::string_view clock_name(Clock clock) {
+  return clock == Clock::kThreadCpu ? "thread_cpu" : "wall";
+}
+
+std::optional<Clock> clock_named(std::string_view name) {
+  for (const Clock clock : {Clock::kThreadCpu, Clock::kWall})
+    if (clock_name(clock) == name) return clock;
+  return std::nullopt;
+}
+
+std::unique_ptr<FrameTimer> make_frame_timer(Context& context, const TimingProtocol& protocol) {
   if (protocol.warm_up < 0 || protocol.repeats < 1 || !(protocol.reference_ms >= 0.0)) {
     throw Failure(ErrorWord::kBadUsage, "timing protocol of " + std::to_string(protocol.warm_up) + " warm-up draws, " +
                                             std::to_string(protocol.repeats) + " repeats and a reference of " +
                                             std::to_string(protocol.reference_ms) + " ms: need >= 0, >= 1 and >= 0");
   }
-  return std::make_unique<CpuFrameTimer>(context, protocol);
+  return std::make_unique<DeviceFrameTimer>(context, protocol);
 }
 
 std::unique_ptr<FrameTimer> make_fake_frame_timer(std::function<double(const FrameCounts&)> milliseconds) {

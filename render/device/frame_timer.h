@@ -1,6 +1,7 @@
 // How long a frame takes: the timing protocol.
 //
-// Thread CPU time up to glFinish, after warm-up draws. The host's speed steps by up to 1.4x within a minute and its caches are shared, so
+// Thread CPU time up to glFinish, after warm-up draws; wall time where the device works outside the calling thread (a GPU, or llvmpipe with
+// threads of its own), whose CPU time would say little. The host's speed steps by up to 1.4x within a minute and its caches are shared, so
 // each repeat draws a fixed reference frame just before the frame, and
 //
 //   milliseconds = reference_ms * median over the repeats of (frame / reference)
@@ -13,6 +14,8 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
+#include <string_view>
 
 #include "render/device/renderer.h"
 #include "render/device/timing_lock.h"
@@ -26,23 +29,29 @@ struct FrameSample {
   int rejected = 0;               // contaminated repeats
 };
 
+enum class Clock { kThreadCpu, kWall };
+/// "thread_cpu", "wall": what target files say.
+[[nodiscard]] std::string_view clock_name(Clock clock);
+[[nodiscard]] std::optional<Clock> clock_named(std::string_view name);
+
 class FrameTimer {
  public:
   virtual ~FrameTimer() = default;
   [[nodiscard]] virtual FrameSample time(Renderer& renderer, const View& view, const DrawList& list) = 0;
   /// Milliseconds of the reference frame that samples are normalised to; what a target file stores.
   [[nodiscard]] virtual double reference_ms() const = 0;
+  [[nodiscard]] virtual Clock clock() const = 0;
 };
 
 struct TimingProtocol {
   int warm_up = 1;            // the first draw of a new state compiles shader variants: 10-300 ms
   int repeats = 9;            // >= 1
   double reference_ms = 0.0;  // of the calibration; 0: this is the calibration, normalise to the reference time of its start
+  std::optional<Clock> clock = std::nullopt;  // of the calibration; none: this is the calibration, find out (sample_statistics.h)
 };
 
-/// Thread CPU time: for llvmpipe with LP_NUM_THREADS=0, which does all its work in the calling thread. The context must be current, stay
-/// current in this thread and outlive the timer. Throws Failure(kBadUsage) for a protocol out of range.
-[[nodiscard]] std::unique_ptr<FrameTimer> make_cpu_frame_timer(Context& context, const TimingProtocol& protocol);
+/// The context must be current, stay current in this thread and outlive the timer. Throws Failure(kBadUsage) for a protocol out of range.
+[[nodiscard]] std::unique_ptr<FrameTimer> make_frame_timer(Context& context, const TimingProtocol& protocol);
 /// milliseconds = f(counts of the frame); draws the frame once. reference_ms() is 1.
 [[nodiscard]] std::unique_ptr<FrameTimer> make_fake_frame_timer(std::function<double(const FrameCounts&)> milliseconds);
 

@@ -1,6 +1,7 @@
 #include "render/device/sample_statistics.h"
 
 #include <algorithm>
+#include <limits>
 #include <vector>
 
 namespace standin {
@@ -15,6 +16,18 @@ double quantile(const std::vector<double>& ascending, double fraction) {
 }
 
 }  // namespace
+
+Clock fitting_clock(std::span<const Duration> durations) {
+  return std::all_of(durations.begin(), durations.end(), [](const Duration& duration) { return duration.contaminated(); })
+             ? Clock::kWall
+             : Clock::kThreadCpu;
+}
+
+double least_ms(std::span<const Duration> durations, Clock clock) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const Duration& duration : durations) least = std::min(least, on_clock(duration, clock).cpu_ms);
+  return least;
+}
 
 bool needs_another(std::span<const Repeat> repeats, int wanted) {
   const auto drawn = static_cast<std::ptrdiff_t>(repeats.size());

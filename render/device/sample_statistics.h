@@ -22,6 +22,16 @@ struct Repeat {
   [[nodiscard]] bool contaminated() const { return reference.contaminated() || frame.contaminated(); }
 };
 
+/// What of it counts by this clock: by the wall clock, both are the wall time, and nothing tells that somebody else ran.
+[[nodiscard]] inline Duration on_clock(const Duration& duration, Clock clock) {
+  return clock == Clock::kThreadCpu ? duration : Duration{duration.wall_ms, duration.wall_ms};
+}
+
+/// Thread CPU time where the thread did the work of at least one of these draws (nearly all its wall time, if nobody else ran), wall time
+/// otherwise. `durations` must not be empty.
+[[nodiscard]] Clock fitting_clock(std::span<const Duration> durations);
+[[nodiscard]] double least_ms(std::span<const Duration> durations, Clock clock);
+
 /// Whether to draw once more: until `wanted` clean repeats, with at most twice as many draws.
 [[nodiscard]] bool needs_another(std::span<const Repeat> repeats, int wanted);
 /// Of the clean repeats; of all where none is clean (CPU times are still close then). `repeats` must not be empty.

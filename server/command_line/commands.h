@@ -23,6 +23,8 @@ struct CommandArguments {
   std::string samples;    // calibrate --samples
   std::string refit;      // calibrate --refit
   double seconds = 45.0;  // calibrate
+  double target_error = 0.0;  // calibrate: ends it early; 0: never
+  double coverage = 0.99;  // calibrate
   std::string objects;    // bake: "1,2,5-9"; empty: all
   std::string view_cell;  // bake: shaft:... or box:...
   std::uint32_t city_objects = 5287;

@@ -103,10 +103,16 @@ void add_input_commands(Grammar& grammar) {
 
   auto calibrate = grammar.command("calibrate", "fit the rendering-time model of this machine, or check one");
   calibrate.scene(false);
-  calibrate.app.add_option("--seconds", calibrate.arguments().seconds, "seconds of timed renders")->check(CLI::Range(1.0, 3600.0));
+  calibrate.app.add_option("--seconds", calibrate.arguments().seconds, "seconds of timed renders, at most")->check(CLI::Range(1.0, 3600.0));
+  calibrate.app
+      .add_option("--target-error", calibrate.arguments().target_error,
+                  "stop as soon as the held-out median error is within this share and the coverage is met; 0: use all seconds")
+      ->check(CLI::Range(0.0, 1.0));
+  calibrate.app.add_option("--coverage", calibrate.arguments().coverage, "share of frames that the bound is to cover")
+      ->check(CLI::Range(0.5, 0.999))
+      ->capture_default_str();
   calibrate.app.add_option("--evaluate", calibrate.arguments().evaluate, "target file to check on the scenes");
-  calibrate.app.add_option("--samples", calibrate.arguments().samples, "write the timed frames to this file (CSV) as well")
-      ->excludes("--evaluate");
+  calibrate.app.add_option("--samples", calibrate.arguments().samples, "write the timed frames to this file (CSV) as well");
   calibrate.app.add_option("--refit", calibrate.arguments().refit, "fit the frames of this file instead of timing any")
       ->excludes("--evaluate")
       ->excludes("--samples");

@@ -169,8 +169,9 @@ VerifyResult verify_placement(const VerifyInput& input, DeviceKind device, bool 
     start_timing = [&](Context& timed) {
       TimingProtocol protocol;
       protocol.reference_ms = input.target.machine.reference_ms;
+      protocol.clock = clock_named(input.target.machine.clock);
       auto lock = std::make_unique<TimingLock>(budget);
-      return TimingSession{std::move(lock), make_cpu_frame_timer(timed, protocol)};
+      return TimingSession{std::move(lock), make_frame_timer(timed, protocol)};
     };
   return verify_placement(input, *context, start_timing, options, budget);
 }

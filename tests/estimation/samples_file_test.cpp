@@ -18,13 +18,16 @@ using testing::HasSubstr;
 CalibrationSamples random_samples(std::uint64_t seed, std::size_t count) {
   Rng rng(seed);
   CalibrationSamples samples;
-  samples.machine = {"osmesa", "llvmpipe (LLVM 15, 256 bits)", "4.5", "a processor, with a comma", 2.0 / 3.0};
+  samples.machine = {"osmesa", "llvmpipe (LLVM 15, 256 bits)", "4.5", "a processor, with a comma", 2.0 / 3.0, "wall"};
   for (std::size_t i = 0; i < count; ++i) {
     TimedFrame frame;
     frame.group = static_cast<std::uint32_t>(i % 3);
     for (double& value : frame.features.value) value = std::pow(10.0, rng.uniform(-9.0, 9.0));
     frame.features[Term::kFrame] = 1.0;
     frame.milliseconds = 1e-3 * frame.features[Term::kDraws] + rng.uniform(0.1, 100.0);
+    frame.spread = rng.uniform(0.0, 0.3);
+    frame.seconds = 0.1 * static_cast<double>(i + 1);
+    frame.passed_pixels = std::floor(rng.uniform(0.0, 1e6));
     samples.frames.push_back(frame);
   }
   return samples;
@@ -58,10 +61,14 @@ TEST_F(SamplesFile, ReadsBackBitForBit) {
   for (std::size_t i = 0; i < read.frames.size(); ++i) {
     EXPECT_EQ(read.frames[i].group, samples.frames[i].group);
     EXPECT_EQ(read.frames[i].milliseconds, samples.frames[i].milliseconds);
+    EXPECT_EQ(read.frames[i].spread, samples.frames[i].spread);
+    EXPECT_EQ(read.frames[i].seconds, samples.frames[i].seconds);
+    EXPECT_EQ(read.frames[i].passed_pixels, samples.frames[i].passed_pixels);
     EXPECT_EQ(read.frames[i].features.value, samples.frames[i].features.value);
   }
   EXPECT_EQ(read.machine.processor, samples.machine.processor);
   EXPECT_EQ(read.machine.reference_ms, samples.machine.reference_ms);
+  EXPECT_EQ(read.machine.clock, "wall");
   EXPECT_EQ(written(read), bytes);
 }
 
@@ -90,14 +97,14 @@ TEST_F(SamplesFile, WhatIsWrongIsNamedWithItsLine) {
     EXPECT_NE(at, std::string::npos) << from;
     return sentence_of(text.replace(at, from.size(), to));
   };
-  EXPECT_THAT(spoilt("samples 1", "samples 2"), HasSubstr("line 1"));
+  EXPECT_THAT(spoilt("samples 2", "samples 1"), HasSubstr("line 1"));
   EXPECT_THAT(spoilt("# renderer", "# vendor"), HasSubstr("line 3"));
-  EXPECT_THAT(spoilt("group,milliseconds", "scene,milliseconds"), HasSubstr("line 7"));
-  EXPECT_THAT(spoilt("\n1,", "\n1,2,"), HasSubstr("line 9: 13 columns"));
-  EXPECT_THAT(spoilt("\n1,", "\n1,nan"), HasSubstr("line 9"));
-  EXPECT_THAT(spoilt("\n2,", "\n-2,"), HasSubstr("line 10: \"-2\" is not a finite number >= 0"));
+  EXPECT_THAT(spoilt("group,milliseconds", "scene,milliseconds"), HasSubstr("line 8"));
+  EXPECT_THAT(spoilt("\n1,", "\n1,2,"), HasSubstr("line 10: 17 columns"));
+  EXPECT_THAT(spoilt("\n1,", "\n1,nan"), HasSubstr("line 10"));
+  EXPECT_THAT(spoilt("\n2,", "\n-2,"), HasSubstr("line 11: \"-2\" is not a finite number >= 0"));
   EXPECT_THAT(sentence_of(""), HasSubstr("line 1"));
-  EXPECT_THAT(sentence_of(good.substr(0, good.size() - 40)), HasSubstr("line 10"));
+  EXPECT_THAT(sentence_of(good.substr(0, good.size() - 40)), HasSubstr("line 11"));
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "estimation/calibrate.h"
+#include "estimation/designed_scene.h"
 #include "small_scenes.h"
 
 namespace standin {
@@ -30,18 +31,21 @@ class Sampling : public ::testing::Test {
     CalibrationOptions options;
     options.seconds = seconds;
     options.seed = seed;
-    return sample_frames(scene_, 3, *context_, *timer, camera_, options, {});
+    return sample_frames(scenes_, *context_, *timer, camera_, options, {}, {});
   }
 
   Camera camera_{.width = 64, .height = 64};
-  Scene scene_ = small_scene();
+  std::vector<Scene> scenes_ = {small_scene(), make_designed_scene()};
   std::unique_ptr<Context> context_ = make_context(DeviceKind::kOsMesa, 64, 64);
 };
 
 TEST_F(Sampling, FindsTheCostsOfAFakeDevice) {
-  const std::vector<TimedFrame> frames = sample(3.0, 1);
+  const std::vector<TimedFrame> frames = sample(10.0, 1);
   ASSERT_GE(frames.size(), 100U);
-  for (const TimedFrame& frame : frames) EXPECT_EQ(frame.group, 3U);
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    EXPECT_LT(frames[i].group, 2U);
+    EXPECT_GT(frames[i].seconds, i > 0 ? frames[i - 1].seconds : 0.0);
+  }
   const FitSummary fit = fit_time_model(frames, 0.95);
   EXPECT_NEAR(fit.model.milliseconds_per_unit[static_cast<std::size_t>(Term::kFrame)], 0.3, 0.01);
   EXPECT_NEAR(fit.model.milliseconds_per_unit[static_cast<std::size_t>(Term::kDraws)], 0.02, 0.001);
@@ -69,7 +73,25 @@ TEST_F(Sampling, StopsOnRequestAndRefusesNoTime) {
   const std::atomic<bool> stop = true;
   const auto timer = make_fake_frame_timer(fake_ms);
   context_->make_current();
-  EXPECT_THROW((void)sample_frames(scene_, 0, *context_, *timer, camera_, {}, WorkBudget(&stop)), Failure);
+  EXPECT_THROW((void)sample_frames(scenes_, *context_, *timer, camera_, {}, {}, WorkBudget(&stop)), Failure);
+  EXPECT_THROW((void)sample_frames({}, *context_, *timer, camera_, {}, {}, {}), Failure);
+}
+
+TEST_F(Sampling, EndsWhenItIsToldThatThisIsEnough) {
+  const auto timer = make_fake_frame_timer(fake_ms);
+  context_->make_current();
+  CalibrationOptions options;
+  options.seconds = 25.0;
+  std::vector<double> looked_at_s;
+  const auto enough = [&](const std::vector<TimedFrame>& frames) {
+    looked_at_s.push_back(frames.back().seconds);
+    return looked_at_s.size() == 2;
+  };
+  const auto frames = sample_frames(scenes_, *context_, *timer, camera_, options, enough, {});
+  ASSERT_EQ(looked_at_s.size(), 2U);
+  EXPECT_NEAR(looked_at_s[0], kLookEvery_s, 1.0);
+  EXPECT_NEAR(looked_at_s[1], 2 * kLookEvery_s, 1.0);
+  EXPECT_EQ(frames.back().seconds, looked_at_s[1]);
 }
 
 }  // namespace

@@ -53,8 +53,9 @@ TEST(ScreenCoverage, ALargeSquareSpreadsOverItsCells) {
   ScreenCoverage coverage(kCamera);
   coverage.add(PixelKind::kPlain, 32.0, 32.0, 4000.0);
   EXPECT_NEAR(coverage.passed()[kPlain], 4000.0, 1e-9);
-  coverage.add(PixelKind::kTextured, 16.0, 16.0, kOverdraw * kCellPixels);
-  EXPECT_LT(coverage.passed()[kTextured], kOverdraw * kCellPixels);
+  for (const auto& [x, y] : {std::pair{16.0, 16.0}, {48.0, 16.0}, {16.0, 48.0}, {48.0, 48.0}})
+    coverage.add(PixelKind::kMasked, x, y, 1000.0);
+  EXPECT_NEAR(coverage.passed()[kMasked], 4.0 * (kOverdraw * kCellPixels - 1000.0), 1e-9);
 }
 
 TEST(ScreenCoverage, NeverPassesMoreThanIsGeneratedNorThanFits) {

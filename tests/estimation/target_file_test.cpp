@@ -41,6 +41,8 @@ Target some_target() {
   target.machine.gl_version = "4.5 (Core Profile)";
   target.machine.processor = "some processor";
   target.machine.reference_ms = 4.0 / 3.0;
+  target.machine.clock = "wall";
+  target.learning_curve = {{5.0, 31, 0.2, 0.5, 0.97, 1.6}, {10.0, 64, 1.0 / 7.0, 0.4, 0.985, 1.5}};
   target.samples = 812;
   target.median_error = 0.11;
   target.p90_error = 0.27;
@@ -83,6 +85,11 @@ TEST_F(TargetFile, ComesBackBitForBit) {
   EXPECT_EQ(read.machine.gl_version, written.machine.gl_version);
   EXPECT_EQ(read.machine.processor, written.machine.processor);
   EXPECT_EQ(read.machine.reference_ms, written.machine.reference_ms);
+  EXPECT_EQ(read.machine.clock, written.machine.clock);
+  ASSERT_EQ(read.learning_curve.size(), 2U);
+  EXPECT_EQ(read.learning_curve[1].frames, 64U);
+  EXPECT_EQ(read.learning_curve[1].median_error, 1.0 / 7.0);
+  EXPECT_EQ(read.learning_curve[1].bound_over_measured_median, 1.5);
   EXPECT_EQ(read.samples, written.samples);
   EXPECT_EQ(read.median_error, written.median_error);
   EXPECT_EQ(read.p90_error, written.p90_error);
@@ -115,7 +122,7 @@ TEST_F(TargetFile, OfAnotherFormatOrVersionIsRefusedByName) {
   const std::string sentence = version->what();
   EXPECT_NE(sentence.find("target.json"), std::string::npos);
   EXPECT_NE(sentence.find("version 7"), std::string::npos);
-  EXPECT_NE(sentence.find("version 1"), std::string::npos);
+  EXPECT_NE(sentence.find("version 2"), std::string::npos);
   for (const auto& change : std::vector<std::function<void(nlohmann::json&)>>{
            [](auto& json) { json["format"] = "standin.placement"; }, [](auto& json) { json.erase("format"); },
            [](auto& json) { json["version"] = "1"; }, [](auto& json) { json = nlohmann::json::array(); }}) {
@@ -146,6 +153,8 @@ TEST_F(TargetFile, WithABadValueIsRefusedNamingIt) {
       {"model", [](auto& json) { json.erase("model"); }},
       {"renderer", [](auto& json) { json["machine"]["renderer"] = 5; }},
       {"reference_ms", [](auto& json) { json["machine"]["reference_ms"] = true; }},
+      {"clock", [](auto& json) { json["machine"]["clock"] = "sundial"; }},
+      {"learning_curve", [](auto& json) { json["quality"]["learning_curve"][1]["p90_error"] = "low"; }},
       {"samples", [](auto& json) { json["quality"]["samples"] = -1; }},
       {"left_out", [](auto& json) { json["quality"]["left_out"] = {1}; }},
       {"id", [](auto& json) { json.erase("id"); }},

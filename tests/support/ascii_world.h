@@ -93,8 +93,11 @@ inline constexpr double kSquare_m = 10.0;
 /// Every term costs something.
 [[nodiscard]] inline TimeModel full_time_model() {
   TimeModel model;
-  for (std::size_t term = 0; term < kTermCount; ++term)
-    model.milliseconds_per_unit[term] = is_pixel_term(static_cast<Term>(term)) ? 20e-6 : 0.0005 * static_cast<double>(term + 1);
+  for (std::size_t i = 0; i < kTermCount; ++i) {
+    const auto term = static_cast<Term>(i);
+    const bool counts_pixels = is_pixel_term(term) || term == Term::kEdgePixels || term == Term::kImpostorPixels;
+    model.milliseconds_per_unit[i] = counts_pixels ? 2e-6 * static_cast<double>(i + 1) : 0.0005 * static_cast<double>(i + 1);
+  }
   return model;
 }
 

@@ -283,18 +283,26 @@ TEST(Subdivision, FinerCellsInheritTheVisibleSetOfTheirLeaf) {
 }
 
 TEST(Subdivision, TheSmallerLinearFormIsChosen) {
-  World world = small_town(0);
-  const auto count_capped = [&] {
-    const Subdivision found = world.subdivide_for(-1.0, test::full_time_model());
-    return std::count_if(found.cpvs.begin(), found.cpvs.end(), [](const Cpv& cpv) { return cpv.pixels_capped; });
-  };
-  EXPECT_EQ(count_capped(), 0);
-  // A finger's breadth from two walls, each of which may fill the image.
-  Box reach = world.scene.objects[0].bounds;
-  reach.extend(world.scene.objects[1].bounds);
-  reach.extend(world.scene.objects[2].bounds);
-  world.space = make_path_view_space({reach.centre()}, 0.5 * reach.diagonal(), {});
-  EXPECT_GT(count_capped(), 0);
+  const World world = small_town(0);
+  const TimeModel model = test::full_time_model();
+  const RegionEstimator estimator = world.estimator(model);
+  const CellBoxes cells(world.space);
+  const Subdivision found = world.subdivide_for(-1.0, model);
+  const double most_pixel_ms = model.most_pixel_ms(estimator.features().most_passed_pixels());
+  std::size_t capped = 0;
+  for (const Cpv& cpv : found.cpvs) {
+    const CellCosts costs = estimator.cell_costs(cells.chain(found.cells[cpv.cell].key), world.all());
+    const auto seen = found.terms_of(cpv);  // a draw costs something: every seen object has a term
+    RegionSums sums = estimator.empty_frame();
+    for (const ObjectCost& object : costs.objects)
+      if (std::any_of(seen.begin(), seen.end(), [&](const RegionTerm& term) { return term.object == object.object; })) sums.add(object.cost);
+    EXPECT_EQ(cpv.pixels_capped, sums.capped_ms < sums.with_pixels_ms);
+    EXPECT_EQ(cpv.predicted_ms, std::min(sums.capped_ms, sums.with_pixels_ms));
+    EXPECT_NEAR(cpv.constant_ms, model.milliseconds_per_unit[0] + (cpv.pixels_capped ? most_pixel_ms : 0.0), 1e-12);
+    capped += cpv.pixels_capped ? 1 : 0;
+  }
+  EXPECT_GT(capped, 0U);
+  EXPECT_LT(capped, found.cpvs.size());
 }
 
 TEST(Subdivision, StopsWhenAskedAndRefusesAForeignVisibility) {

@@ -55,6 +55,22 @@ TEST(SampleStatistics, DrawsAtMostTwiceAsOftenAsAsked) {
   EXPECT_EQ(repeats.size(), 6U);
 }
 
+TEST(SampleStatistics, TheClockFollowsWhereTheWorkIsDone) {
+  const Duration here{.cpu_ms = 3.0, .wall_ms = 3.1}, disturbed{.cpu_ms = 3.0, .wall_ms = 9.0}, elsewhere{.cpu_ms = 0.2, .wall_ms = 4.0};
+  EXPECT_EQ(fitting_clock(std::vector{disturbed, here, disturbed}), Clock::kThreadCpu);
+  EXPECT_EQ(fitting_clock(std::vector{elsewhere, elsewhere, {.cpu_ms = 0.3, .wall_ms = 5.0}}), Clock::kWall);
+  EXPECT_EQ(least_ms(std::vector{disturbed, elsewhere}, Clock::kThreadCpu), 0.2);
+  EXPECT_EQ(least_ms(std::vector{disturbed, elsewhere}, Clock::kWall), 4.0);
+}
+
+TEST(SampleStatistics, ByTheWallClockNothingIsContaminated) {
+  const Duration elsewhere{.cpu_ms = 0.2, .wall_ms = 4.0};
+  EXPECT_TRUE(elsewhere.contaminated());
+  EXPECT_FALSE(on_clock(elsewhere, Clock::kWall).contaminated());
+  EXPECT_EQ(on_clock(elsewhere, Clock::kWall).cpu_ms, 4.0);
+  EXPECT_EQ(on_clock(elsewhere, Clock::kThreadCpu).cpu_ms, 0.2);
+}
+
 TEST(DrawOrder, MaskedThenOctaveThenStateThenDistanceThenPiece) {
   const OrderedDraw far_opaque{.key = draw_key(false, 1000.0, 0), .distance_m = 1000.0, .piece = 0};
   const OrderedDraw near_masked{.key = draw_key(true, 1.0, 0), .distance_m = 1.0, .piece = 0};
@@ -93,10 +109,14 @@ TEST_F(FrameTimerTest, TheCpuTimerMeasuresSomethingAndLeavesTheFrameReadable) {
   const View view{.position = Vec3(0.0, 0.0, 9.0)};
   renderer.draw(view, everything(scene));
   const Texture before = renderer.read_pixels();
-  const auto timer = make_cpu_frame_timer(*context, {.warm_up = 1, .repeats = 3, .reference_ms = 4.0});
+  const auto timer = make_frame_timer(*context, {.warm_up = 1, .repeats = 3, .reference_ms = 4.0});
   const FrameSample sample = timer->time(renderer, view, everything(scene));
   EXPECT_TRUE(std::isfinite(sample.milliseconds) && sample.milliseconds > 0.0);
   EXPECT_DOUBLE_EQ(timer->reference_ms(), 4.0);
+  EXPECT_EQ(timer->clock(), Clock::kThreadCpu);
+  const auto wall = make_frame_timer(*context, {.warm_up = 1, .repeats = 3, .clock = Clock::kWall});
+  EXPECT_EQ(wall->clock(), Clock::kWall);
+  EXPECT_GT(wall->time(renderer, view, everything(scene)).milliseconds, 0.0);
   EXPECT_EQ(renderer.read_pixels().rgba, before.rgba);
 }
 
@@ -104,7 +124,7 @@ TEST_F(FrameTimerTest, AProtocolOutOfRangeIsBadUsage) {
   for (const TimingProtocol& protocol : {TimingProtocol{.warm_up = -1}, TimingProtocol{.repeats = 0}, TimingProtocol{.reference_ms = -1.0},
                                          TimingProtocol{.reference_ms = std::nan("")}}) {
     try {
-      [[maybe_unused]] const auto timer = make_cpu_frame_timer(*context, protocol);
+      [[maybe_unused]] const auto timer = make_frame_timer(*context, protocol);
       ADD_FAILURE();
     } catch (const Failure& failure) {
       EXPECT_EQ(failure.word(), ErrorWord::kBadUsage);

@@ -1,0 +1,121 @@
+#include "estimation/designed_scene.h"
+
+#include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
+#include <numbers>
+
+#include "render/base/rng.h"
+
+namespace standin {
+namespace {
+
+constexpr std::uint64_t kSeed = 20050505;
+constexpr int kTextureSide = 256;
+constexpr double kPitch_m = 12.0;
+constexpr double kRadius_m = 2.5;
+constexpr int kCopies = 2;  // of each ball
+constexpr int kCrowdSide = 20;
+
+/// Materials, by index.
+enum Style : std::uint32_t { kPlain, kTextured, kMasked, kStyles };
+
+/// Noise; with `holes`, two texels of five in blocks of 8 x 8 are transparent.
+Texture noise_texture(std::uint64_t stream, bool holes) {
+  Texture texture{.name = holes ? "holes" : "noise", .width = kTextureSide, .height = kTextureSide, .rgba = {}};
+  Rng rng(kSeed, stream);
+  std::vector<bool> open;
+  for (int block = 0; block < kTextureSide * kTextureSide / 64; ++block) open.push_back(holes && rng.uniform() < 0.4);
+  for (int y = 0; y < kTextureSide; ++y)
+    for (int x = 0; x < kTextureSide; ++x) {
+      for (int channel = 0; channel < 3; ++channel) texture.rgba.push_back(static_cast<std::uint8_t>(96 + rng.below(160)));
+      texture.rgba.push_back(open[static_cast<std::size_t>(y / 8 * (kTextureSide / 8) + x / 8)] ? 0 : 255);
+    }
+  return texture;
+}
+
+void add_materials(Scene& scene) {
+  scene.textures = {noise_texture(1, false), noise_texture(2, true)};
+  scene.materials.resize(kStyles);
+  scene.materials[kPlain].base_colour = {0.7F, 0.6F, 0.5F, 1.0F};
+  scene.materials[kTextured].texture = 0;
+  scene.materials[kMasked].texture = 1;
+  scene.materials[kMasked].alpha_mode = AlphaMode::kMask;
+  scene.materials[kMasked].double_sided = true;
+}
+
+/// A ball of `rings` x 2 `rings` quads, its poles along y.
+Mesh ball(int rings) {
+  Mesh mesh;
+  mesh.name = "ball";
+  const int columns = 2 * rings;
+  for (int i = 0; i <= rings; ++i)
+    for (int j = 0; j <= columns; ++j) {
+      const double polar = std::numbers::pi * i / rings, azimuth = 2.0 * std::numbers::pi * j / columns;
+      const Vec3 normal(std::sin(polar) * std::cos(azimuth), std::cos(polar), std::sin(polar) * std::sin(azimuth));
+      mesh.positions.emplace_back(kRadius_m * normal);
+      mesh.normals.emplace_back(normal);
+      mesh.uvs.emplace_back(4.0 * j / columns, 2.0 * i / rings);
+    }
+  const auto at = [&](int i, int j) { return static_cast<std::uint32_t>(i * (columns + 1) + j); };
+  for (int i = 0; i < rings; ++i)
+    for (int j = 0; j < columns; ++j)
+      for (const std::uint32_t index : {at(i, j), at(i, j + 1), at(i + 1, j + 1), at(i, j), at(i + 1, j + 1), at(i + 1, j)})
+        mesh.indices.push_back(index);
+  return mesh;
+}
+
+/// Two triangles that face +z.
+Mesh panel() {
+  Mesh mesh;
+  mesh.name = "panel";
+  for (const auto& [x, y] : {std::pair{-1.0F, -1.0F}, {1.0F, -1.0F}, {1.0F, 1.0F}, {-1.0F, 1.0F}}) {
+    mesh.positions.push_back(static_cast<float>(kRadius_m) * glm::vec3(x, y, 0.0F));
+    mesh.normals.emplace_back(0.0F, 0.0F, 1.0F);
+    mesh.uvs.emplace_back(x, y);
+  }
+  mesh.indices = {0, 1, 2, 0, 2, 3};
+  return mesh;
+}
+
+void add_object(Scene& scene, std::uint32_t mesh, Style style, const Vec3& place, double scale) {
+  Object object;
+  object.name = scene.meshes[mesh].name + " " + std::to_string(scene.objects.size());
+  object.world_from_object = glm::scale(glm::translate(Mat4(1.0), place), Vec3(scale));
+  object.first_part = static_cast<std::uint32_t>(scene.parts.size());
+  object.part_count = 1;
+  scene.parts.push_back({mesh, style});
+  scene.objects.push_back(object);
+}
+
+/// A row of every fineness, twice.
+void add_row(Scene& scene, Style style, double z_m) {
+  for (int copy = 0; copy < kCopies; ++copy)
+    for (std::uint32_t mesh = 0; mesh < scene.meshes.size(); ++mesh) {
+      const double x_m = kPitch_m * static_cast<double>(scene.meshes.size() * static_cast<std::size_t>(copy) + mesh);
+      add_object(scene, mesh, style, {x_m, kRadius_m, z_m}, 1.0);
+    }
+}
+
+/// Light objects close together: what a draw costs.
+void add_crowd(Scene& scene, Style style, std::uint32_t mesh, const Vec3& corner) {
+  constexpr double kScale = 0.12;
+  for (int i = 0; i < kCrowdSide * kCrowdSide / 2; ++i)
+    add_object(scene, mesh, style, corner + Vec3(0.9 * (i % kCrowdSide), kScale * kRadius_m, 0.9 * (i / kCrowdSide)), kScale);
+}
+
+}  // namespace
+
+Scene make_designed_scene() {
+  Scene scene;
+  scene.name = "designed";
+  add_materials(scene);
+  scene.meshes.push_back(panel());
+  for (const int rings : {3, 10, 32, 120}) scene.meshes.push_back(ball(rings));
+  for (const Style style : {kPlain, kTextured, kMasked}) add_row(scene, style, kPitch_m * static_cast<double>(style));
+  add_crowd(scene, kPlain, 1, {0.0, 0.0, 3.0 * kPitch_m});
+  add_crowd(scene, kTextured, 1, {2.0 * kPitch_m, 0.0, 3.0 * kPitch_m});
+  update_derived(scene);
+  return scene;
+}
+
+}  // namespace standin
