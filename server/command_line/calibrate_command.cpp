@@ -77,6 +77,20 @@ json terms_json(const std::vector<FittedTerm>& terms) {
   return list;
 }
 
+json null_if_infinite(double number) {
+  return std::isfinite(number) ? json(number) : json();
+}
+
+json covariance_json(const FitSummary& fit) {
+  json matrix = json::array();
+  for (std::size_t i = 0; i < fit.terms.size(); ++i) {
+    json row = json::array();
+    for (std::size_t j = 0; j < fit.terms.size(); ++j) row.push_back(null_if_infinite(fit.relative_covariance[i * fit.terms.size() + j]));
+    matrix.push_back(row);
+  }
+  return matrix;
+}
+
 json fit_json(const FitSummary& fit) {
   json terms = json::object();
   for (std::size_t i = 0; i < kTermCount; ++i) terms[std::string(term_name(static_cast<Term>(i)))] = fit.model.milliseconds_per_unit[i];
@@ -87,12 +101,13 @@ json fit_json(const FitSummary& fit) {
           {"coverage", fit.measured_coverage},
           {"bound_over_measured_median", fit.bound_over_measured_median},
           {"milliseconds_per_unit", terms},
-          {"pixel_cap_ms", std::isfinite(fit.model.pixel_cap_ms) ? json(fit.model.pixel_cap_ms) : json()},
+          {"pixel_cap_ms", null_if_infinite(fit.model.pixel_cap_ms)},
           {"combination", fit.model.combination == Combination::kSum ? "sum" : "max"},
           {"sum_error", fit.sum_error},
           {"max_error", fit.max_error},
-          {"condition_number", std::isfinite(fit.condition_number) ? json(fit.condition_number) : json()},
+          {"condition_number", null_if_infinite(fit.condition_number)},
           {"terms", terms_json(fit.terms)},
+          {"relative_covariance", covariance_json(fit)},
           {"left_out", fit.left_out},
           {"warnings", fit.warnings}};
 }
