@@ -141,6 +141,7 @@ FitSummary fit_time_model(const std::vector<TimedFrame>& all_frames, double cove
   summary.stopped = fitted.fit.stopped;
   summary.condition_number = fitted.fit.condition_number;
   summary.terms = fitted_terms(fitted);
+  summary.relative_covariance = fitted.fit.relative_covariance;
   summary.sum_error = choice.sum_error;
   summary.max_error = choice.max_error;
   summary.left_out.insert(summary.left_out.end(), choice.left_out.begin(), choice.left_out.end());

@@ -67,6 +67,7 @@ struct FitSummary {
   std::string stopped;            // how the solver ended
   double condition_number = 1.0;  // of the weighted, scaled columns of the terms above 0
   std::vector<FittedTerm> terms;
+  std::vector<double> relative_covariance;  // of the terms' relative errors, terms x terms; 0 for terms at 0, infinity where unknown
   double sum_error = 0.0;  // mean held-out error where the stages' times add up, and where they overlap: model.combination is the choice
   double max_error = 0.0;
   std::uint32_t frames = 0;

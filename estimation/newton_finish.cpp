@@ -323,11 +323,13 @@ NewtonFinish newton_finish(const ScaledRows& rows, const Loss& loss, std::vector
 }
 
 void diagnose(const ScaledRows& rows, const Loss& loss, const std::vector<double>& u, FitResult& result) {
+  const std::size_t n = u.size();
   std::vector<Index> free;
-  for (std::size_t j = 0; j < u.size(); ++j)
+  for (std::size_t j = 0; j < n; ++j)
     if (u[j] > 0.0) free.push_back(static_cast<Index>(j));
-  result.relative_standard_error.assign(u.size(), kInfinity);
-  result.weakest_direction.assign(u.size(), 0.0);
+  result.relative_covariance.assign(n * n, 0.0);
+  result.relative_standard_error.assign(n, kInfinity);
+  result.weakest_direction.assign(n, 0.0);
   result.condition_number = 1.0;
   if (free.empty()) return;
   double squares = 0.0;
@@ -338,14 +340,25 @@ void diagnose(const ScaledRows& rows, const Loss& loss, const std::vector<double
   const Eigen::JacobiSVD<Matrix> svd(r, Eigen::ComputeFullV);
   const Vector& values = svd.singularValues();
   const Index last = values.size() - 1;
-  result.condition_number = values[last] > 0.0 ? values[0] / values[last] : kInfinity;
+  const bool dependent = !(values[last] > 0.0);
+  result.condition_number = dependent ? kInfinity : values[0] / values[last];
   const double degrees = static_cast<double>(rows.rows()) - static_cast<double>(free.size());
-  for (Index k = 0; k < r.cols(); ++k) {
-    const auto term = static_cast<std::size_t>(free[static_cast<std::size_t>(k)]);
-    result.weakest_direction[term] = svd.matrixV()(k, last);
-    const double inverse_length = svd.matrixV().row(k).transpose().cwiseQuotient(values).norm() / lengths[k];
-    if (degrees > 0.0 && std::isfinite(inverse_length))
-      result.relative_standard_error[term] = std::sqrt(squares / degrees) * inverse_length / u[term];
+  const bool known = degrees > 0.0 && !dependent;
+  // Row k: R's inverse, of coefficient k relative to itself.
+  Matrix inverse = svd.matrixV() * values.cwiseInverse().asDiagonal();
+  for (std::size_t k = 0; k < free.size(); ++k) {
+    const auto row = static_cast<Index>(k);
+    const auto term = static_cast<std::size_t>(free[k]);
+    result.weakest_direction[term] = svd.matrixV()(row, last);
+    inverse.row(row) *= known ? std::sqrt(squares / degrees) / (lengths[row] * u[term]) : 0.0;
+  }
+  for (std::size_t k = 0; k < free.size(); ++k)
+    for (std::size_t l = 0; l < free.size(); ++l)
+      result.relative_covariance[static_cast<std::size_t>(free[k]) * n + static_cast<std::size_t>(free[l])] =
+          known ? inverse.row(static_cast<Index>(k)).dot(inverse.row(static_cast<Index>(l))) : kInfinity;
+  for (const Index term : free) {
+    const auto j = static_cast<std::size_t>(term);
+    result.relative_standard_error[j] = std::sqrt(result.relative_covariance[j * n + j]);
   }
 }
 

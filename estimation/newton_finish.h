@@ -1,10 +1,10 @@
 // The end of the robust fit: Newton's method with bounds, each step a non-negative least-squares problem solved by QR; internal to the fit.
 //
 // Gauss-Newton under a redescending loss converges only linearly, and projected steps stall where bounds are active; both leave the eighth
-// digit open. Here each step minimises the exact quadratic model over u >= 0: rows of positive curvature go through a QR decomposition,
-// batch by batch, so that memory does not grow with rows; the others (beyond the loss's scale) correct it in the coordinates that the QR
-// has whitened. Where that model has no minimum, rows are weighted by rho' instead, which never rises (majorisation: rho is concave in
-// r^2). Lawson and Hanson 1974, chapter 23, for the least-squares problem with bounds. Squares of columns are formed nowhere else.
+// digit open. Here each step minimises the exact quadratic model over u >= 0 (Lawson and Hanson 1974, chapter 23). Rows of positive
+// curvature go through a QR decomposition, batch by batch, so that memory does not grow with rows; the others (beyond the loss's scale)
+// correct it in the coordinates that the QR has whitened, so that normal equations are formed nowhere. Where that model has no minimum,
+// rows are weighted by rho' instead, which never raises the objective (majorisation: rho is concave in r^2).
 #pragma once
 
 #include <string>

@@ -21,8 +21,8 @@ inline constexpr double kSmallFrameMs = 0.3;
 inline constexpr double kLossScale = 0.1;
 
 struct FitProblem {
-  std::vector<double> features;      // row by row, terms in each; finite, >= 0
-  std::vector<double> milliseconds;  // of each row; finite, > 0
+  std::vector<double> features;      // row by row, terms in each; 0 to 1e300
+  std::vector<double> milliseconds;  // of each row; above 0, to 1e300
   std::vector<Stage> stages;         // of each term
   [[nodiscard]] std::size_t rows() const { return milliseconds.size(); }
   [[nodiscard]] std::size_t terms() const { return stages.size(); }
@@ -36,17 +36,19 @@ struct FitOptions {
 struct FitResult {
   std::vector<double> milliseconds_per_unit;  // >= 0
   std::vector<bool> at_bound;                 // 0 although some row has the term
-  /// Of the free terms, as of weighted least squares with the loss's last weights; infinity where there is none (0 itself, or no more rows
-  /// than free terms).
-  std::vector<double> relative_standard_error;
-  double condition_number = 1.0;          // of the free terms' weighted columns, each scaled to length 1; infinity: dependent
-  std::vector<double> weakest_direction;  // of length 1: the mixture of scaled terms that the rows say least about
-  double objective = 0.0;                 // half the sum of rho
+  /// Of the free terms' relative errors, terms x terms, as of weighted least squares with the loss's last weights; 0 in rows and columns of
+  /// terms at 0, infinity where there is none (no more rows than free terms, or dependent columns).
+  std::vector<double> relative_covariance;
+  std::vector<double> relative_standard_error;  // roots of its diagonal; infinity at 0
+  double condition_number = 1.0;                // of the free terms' weighted columns, each scaled to length 1; infinity: dependent
+  std::vector<double> weakest_direction;        // of length 1: the mixture of scaled terms that the rows say least about
+  double objective = 0.0;                       // half the sum of rho
   bool converged = false;
   std::string stopped;  // how the solver ended
 };
 
-/// Deterministic. Throws Failure(kBadUsage) naming the row for what is not finite or has a wrong sign, or when there is no row or no term.
+/// Deterministic. A maximum has kinks: a fit that ends in one may stop short of the best coefficients by about a thousandth, not converged.
+/// Throws Failure(kBadUsage) naming the row for what is not finite or has a wrong sign, or when there is no row or no term.
 [[nodiscard]] FitResult fit_robustly(const FitProblem& problem, const FitOptions& options);
 
 /// Rows evenly spread, about `count` of them, so that each term has its share of rows however rare it is; ascending, all if there are

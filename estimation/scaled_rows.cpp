@@ -25,7 +25,7 @@ ScaledRows::ScaledRows(const FitProblem& problem, Combination combination) : com
     for (std::size_t j = 0; j < n; ++j)
       if (const double share = greatest[j] > 0.0 ? x_[i * n + j] / greatest[j] : 0.0; share > 0.0) sums[j] += share * share;
   for (std::size_t j = 0; j < n; ++j)
-    if (greatest[j] > 0.0) units_[j] = std::sqrt(static_cast<double>(count) / sums[j]) / greatest[j];
+    if (const double unit = std::sqrt(static_cast<double>(count) / sums[j]) / greatest[j]; std::isfinite(unit)) units_[j] = unit;
   for (std::size_t i = 0; i < count; ++i)
     for (std::size_t j = 0; j < n; ++j) x_[i * n + j] *= units_[j];
 }

@@ -280,9 +280,15 @@ SelfTestOutcome change_of_speed() {
 
 // ---- models ----
 
+/// Geometry and fill cost about the same, so that either may be the longer.
 SelfTestOutcome stages(Combination combination) {
   TimeModel truth = true_model();
   truth.combination = combination;
+  std::array<double, 3> of_stage{};
+  for (std::size_t i = 0; i < kTermCount; ++i)
+    of_stage[static_cast<std::size_t>(stage_of(static_cast<Term>(i)))] += truth.milliseconds_per_unit[i] * feature_scale(i);
+  for (std::size_t i = 0; i < kTermCount; ++i)
+    if (stage_of(static_cast<Term>(i)) == Stage::kFill) truth.milliseconds_per_unit[i] *= of_stage[1] / of_stage[2];
   Frames frames = exact_frames(40, 500, truth);
   Rng rng(40);
   for (TimedFrame& frame : frames) frame.milliseconds *= std::exp(0.03 * normal(rng));

@@ -23,6 +23,20 @@ json terms_json(const std::vector<FittedTerm>& terms) {
   return list;
 }
 
+json null_if_infinite(double number) {
+  return std::isfinite(number) ? json(number) : json();
+}
+
+json covariance_json(const FitSummary& fit) {
+  json matrix = json::array();
+  for (std::size_t i = 0; i < fit.terms.size(); ++i) {
+    json row = json::array();
+    for (std::size_t j = 0; j < fit.terms.size(); ++j) row.push_back(null_if_infinite(fit.relative_covariance[i * fit.terms.size() + j]));
+    matrix.push_back(row);
+  }
+  return matrix;
+}
+
 json curve_json(const std::vector<LearningPoint>& curve) {
   json list = json::array();
   for (const LearningPoint& point : curve)
@@ -49,8 +63,9 @@ json fit_json(const FitSummary& fit, const std::vector<LearningPoint>& curve) {
           {"combination", fit.model.combination == Combination::kSum ? "sum" : "max"},
           {"sum_error", fit.sum_error},
           {"max_error", fit.max_error},
-          {"condition_number", std::isfinite(fit.condition_number) ? json(fit.condition_number) : json()},
+          {"condition_number", null_if_infinite(fit.condition_number)},
           {"terms", terms_json(fit.terms)},
+          {"relative_covariance", covariance_json(fit)},
           {"left_out", fit.left_out},
           {"learning_curve", curve_json(curve)},
           {"warnings", fit.warnings},

@@ -124,6 +124,7 @@ void add_input_commands(Grammar& grammar) {
   calibrate.app.add_flag("--explain", calibrate.arguments().explain, "say what each term costs, in words");
   calibrate.spec_flags(kTimingSections);
   calibrate.output("target file", false);
+  calibrate.app.get_option("--self-test")->excludes("--output");
   calibrate.json();
   calibrate.run(calibrate_command);
 }

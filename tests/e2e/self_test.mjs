@@ -17,5 +17,5 @@ test("every case passes and says what it got", () => {
 });
 
 test("it takes no other task beside it", () => {
-  for (const flag of ["--refit", "--evaluate", "--samples"]) expectExit(2, "calibrate", "--self-test", flag, "some.file");
+  for (const flag of ["--refit", "--evaluate", "--samples", "-o"]) expectExit(2, "calibrate", "--self-test", flag, "some.file");
 });

@@ -175,13 +175,38 @@ TEST(RobustFit, StandardErrorsAreHonest) {
   EXPECT_NEAR(within / all, 0.68, 0.08);
 }
 
+// Against repeated draws of the noise: how two coefficients err together.
+TEST(RobustFit, CovarianceIsThatOfRepeatedFits) {
+  const auto columns = [](Rng& rng) {
+    const double shared = rng.uniform();
+    return std::pair{shared + 0.3 * rng.uniform(), shared + 0.3 * rng.uniform()};
+  };
+  double together = 0.0, stated = 0.0;
+  constexpr int kDraws = 400;
+  for (std::uint64_t draw = 0; draw < kDraws; ++draw) {
+    Rng rows(99), noise(draw, 5);
+    FitProblem problem{{}, {}, {Stage::kGeometry, Stage::kGeometry}};
+    for (int i = 0; i < 200; ++i) {
+      const auto [a, b] = columns(rows);
+      problem.features.insert(problem.features.end(), {a, b});
+      problem.milliseconds.push_back((3.0 * a + 2.0 * b) * (1.0 + 0.02 * normal(noise)));
+    }
+    const FitResult fit = fit_robustly(problem, {});
+    together += (fit.milliseconds_per_unit[0] / 3.0 - 1.0) * (fit.milliseconds_per_unit[1] / 2.0 - 1.0) / kDraws;
+    stated += fit.relative_covariance[1] / kDraws;
+    ASSERT_EQ(fit.relative_covariance[1], fit.relative_covariance[2]);
+    ASSERT_DOUBLE_EQ(std::sqrt(fit.relative_covariance[3]), fit.relative_standard_error[1]);
+  }
+  EXPECT_LT(stated, 0.0);
+  EXPECT_NEAR(together / stated, 1.0, 0.2);
+}
+
 TEST(RobustFit, ConditionNumberByHand) {
   // Two columns of length 1 at 60 degrees: singular values sqrt(1 +- 1/2). Exact times leave every weight at 1.
   FitProblem problem{{1.0, 0.5, 0.0, std::sqrt(0.75)}, {1.0, 1.0}, {Stage::kGeometry, Stage::kGeometry}};
   for (std::size_t i = 0; i < 2; ++i) problem.milliseconds[i] = problem.features[2 * i] + problem.features[2 * i + 1];
   for (std::size_t i = 0; i < 2; ++i)
     for (std::size_t j = 0; j < 2; ++j) problem.features[2 * i + j] *= problem.milliseconds[i] + kSmallFrameMs;
-  for (double& ms : problem.milliseconds) ms *= 1.0;
   const FitResult fit = fit_robustly(problem, {});
   EXPECT_NEAR(fit.condition_number, std::sqrt(3.0), 1e-2);
   EXPECT_TRUE(std::isinf(fit.relative_standard_error[0])) << "as many terms as rows leave no error to estimate";

@@ -62,6 +62,24 @@ TEST(TimeModel, TakesTheLongerStageWhereStagesOverlap) {
   EXPECT_DOUBLE_EQ(model.predicted_ms(model.cost(frame)), 56.0) << "what regions are bounded by";
 }
 
+TEST(TimeModel, MoreOfAnyFeatureNeverCostsLess) {
+  for (std::uint64_t seed = 0; seed < 200; ++seed) {
+    Rng rng(seed, 3);
+    TimeModel model = model_with({{kInfinity, 1.0}});
+    model.combination = seed % 2 == 0 ? Combination::kSum : Combination::kMax;
+    Features frame;
+    for (std::size_t i = 0; i < kTermCount; ++i) {
+      model.milliseconds_per_unit[i] = std::pow(10.0, rng.uniform(-9.0, 3.0));
+      frame.value[i] = std::pow(10.0, rng.uniform(-3.0, 9.0));
+    }
+    for (std::size_t i = 0; i < kTermCount; ++i) {
+      Features more = frame;
+      more.value[i] *= 1.0 + rng.uniform();
+      ASSERT_GE(model.predicted_ms(more), model.predicted_ms(frame)) << "seed " << seed << ", " << term_name(static_cast<Term>(i));
+    }
+  }
+}
+
 // Regions of a machine whose stages overlap are bounded by the sum.
 TEST(TimeModel, SumIsNeverLessThanTheLongerStage) {
   for (std::uint64_t seed = 0; seed < 200; ++seed) {
