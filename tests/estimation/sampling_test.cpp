@@ -89,8 +89,9 @@ TEST_F(Sampling, EndsWhenItIsToldThatThisIsEnough) {
   };
   const auto frames = sample_frames(scenes_, *context_, *timer, camera_, options, enough, {});
   ASSERT_EQ(looked_at_s.size(), 2U);
-  EXPECT_NEAR(looked_at_s[0], kLookEvery_s, 1.0);
-  EXPECT_NEAR(looked_at_s[1], 2 * kLookEvery_s, 1.0);
+  EXPECT_GE(looked_at_s[0], kLookEvery_s);
+  EXPECT_LT(looked_at_s[0], 2 * kLookEvery_s);
+  EXPECT_GE(looked_at_s[1], 2 * kLookEvery_s);
   EXPECT_EQ(frames.back().seconds, looked_at_s[1]);
 }
 
