@@ -58,6 +58,7 @@ std::optional<std::string> ill_conditioned(const FittedForm& fitted) {
 
 std::optional<std::string> coarse_times(const std::vector<TimedFrame>& frames) {
   std::vector<double> times;
+  times.reserve(frames.size());
   for (const TimedFrame& frame : frames) times.push_back(frame.milliseconds);
   const double middle = median(times);
   std::sort(times.begin(), times.end());
@@ -82,6 +83,7 @@ std::size_t likeliest_step(const std::vector<double>& logs) {
   const auto n = static_cast<double>(logs.size());
   double total = 0.0;
   std::vector<double> sums;
+  sums.reserve(logs.size());
   for (const double value : logs) sums.push_back(total += std::clamp(value - centre, -limit, limit));
   std::size_t best = kLeastRun;
   double greatest = 0.0;
@@ -124,6 +126,7 @@ std::optional<std::string> two_speeds(const std::vector<TimedFrame>& frames, con
 
 std::optional<std::string> many_outliers(const std::vector<TimedFrame>& frames, const TimeModel& model) {
   std::vector<double> errors;
+  errors.reserve(frames.size());
   for (const TimedFrame& frame : frames)
     errors.push_back(std::abs(model.predicted_ms(frame.features) - frame.milliseconds) / (frame.milliseconds + kSmallFrameMs));
   const double limit = std::max(kLeastOutlier, kOutlierScales * kScaleOfMedian * median(errors));

@@ -2,6 +2,7 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace standin {
@@ -268,7 +269,8 @@ class Finisher {
     const bool last = within_tolerance(u, wanted) || to_rounding;
     // Near the end a whole step changes the objective by less than its rounding, which then decides nothing.
     const double slack = 1e-14 * objective_ + 1e-31 * targets_;
-    for (double share = 1.0; share > 1e-9; share *= 0.5) {
+    for (int halvings = 0; halvings < 30; ++halvings) {
+      const double share = std::ldexp(1.0, -halvings);
       const Vector next = share == 1.0 ? wanted : Vector(u + share * (wanted - u));
       const double objective = rows_.objective(loss_, next.data());
       if (!(share == 1.0 ? objective <= objective_ + slack : objective < objective_)) continue;
