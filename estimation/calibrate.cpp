@@ -109,7 +109,6 @@ void check_input(const std::vector<TimedFrame>& frames, double coverage) {
 
 void fill_quality(const std::vector<HeldOut>& held_out, const std::vector<Rows>& folds, double coverage, FitSummary& summary) {
   const Evaluation quality = summarise(held_out, held_out_bounds(held_out, folds, coverage));
-  summary.frames = quality.frames;
   summary.median_error = quality.median_error;
   summary.p90_error = quality.p90_error;
   summary.measured_coverage = quality.coverage;
@@ -127,9 +126,11 @@ std::vector<TimedFrame> steady_frames(const std::vector<TimedFrame>& frames) {
 
 FitSummary fit_time_model(const std::vector<TimedFrame>& all_frames, double coverage) {
   check_input(all_frames, coverage);
-  const std::vector<TimedFrame> frames = steady_frames(all_frames);
+  const std::vector<TimedFrame> steady = steady_frames(all_frames);
+  const std::vector<TimedFrame> frames = judged_first(steady);
   FitSummary summary;
-  summary.unsteady_frames = static_cast<std::uint32_t>(all_frames.size() - frames.size());
+  summary.frames = static_cast<std::uint32_t>(steady.size());
+  summary.unsteady_frames = static_cast<std::uint32_t>(all_frames.size() - steady.size());
   const FormChoice choice = choose_form(frames, supported_terms(frames, summary.left_out));
   const FittedForm fitted = fit_form(frames, all_rows(frames.size()), choice.form);
   const std::vector<Rows> folds = folds_of(frames);
@@ -146,7 +147,7 @@ FitSummary fit_time_model(const std::vector<TimedFrame>& all_frames, double cove
   summary.max_error = choice.max_error;
   summary.left_out.insert(summary.left_out.end(), choice.left_out.begin(), choice.left_out.end());
   name_zero_terms(fitted, summary.left_out);
-  summary.warnings = fit_warnings(frames, fitted);
+  summary.warnings = fit_warnings(steady, fitted);
   return summary;
 }
 

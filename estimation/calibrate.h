@@ -20,6 +20,7 @@ struct TimedFrame {
   Features features;  // estimate for its view
   double milliseconds = 0.0;
   std::uint32_t group = 0;
+  bool designed = false;  // of the designed scene: fitted, never held out, and no part of what the bound is calibrated on
   // For diagnosis; the fit asks for the spread alone.
   double spread = 0.0;         // of the repeats, relative
   double seconds = 0.0;        // of timed renders so far, since the calibration began
@@ -49,9 +50,15 @@ inline constexpr double kLookEvery_s = 5.0;
 /// Asked then; true ends the calibration.
 using Enough = std::function<bool(const std::vector<TimedFrame>&)>;
 
+/// A scene to time frames of.
+struct TrainingScene {
+  Scene scene;
+  bool designed = false;
+};
+
 /// Timed frames of the scenes, taking turns (group: index of the scene): clusters, whole frames, with and without impostors. The context must be
 /// current. Which frames are timed depends on the seed alone; fewer seconds stop earlier.
-[[nodiscard]] std::vector<TimedFrame> sample_frames(std::span<const Scene> scenes, Context& context, FrameTimer& timer, const Camera& camera,
+[[nodiscard]] std::vector<TimedFrame> sample_frames(std::span<const TrainingScene> scenes, Context& context, FrameTimer& timer, const Camera& camera,
                                                     const CalibrationOptions& options, const Enough& enough, const WorkBudget& budget);
 
 /// A term that takes part in the fit.
@@ -81,7 +88,7 @@ struct FitSummary {
 };
 
 /// Deterministic. Terms the frames cannot support are dropped and named. Stages add up unless the held-out error speaks for an overlap
-/// (held_out.h). Errors and bound are those on frames held out: scene by scene, or in five random folds where there is one scene only (or
+/// (held_out.h). Errors and bound are those on frames held out, the designed ones in every fit: scene by scene, or in five random folds where there is one scene only (or
 /// one that no other can stand in for). Throws Failure(kBadUsage) naming the row for a time that is not finite and positive, or when there
 /// are too few steady frames.
 [[nodiscard]] FitSummary fit_time_model(const std::vector<TimedFrame>& frames, double coverage);

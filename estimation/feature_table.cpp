@@ -34,9 +34,9 @@ struct PlacedMesh {
   Vec3 origin;
   double scale;
 
-  [[nodiscard]] Vec3 point(const SurfaceSample& sample) const { return placed_from_mesh * sample.point + origin; }
-  [[nodiscard]] Vec3 vector_area_m2(const SurfaceSample& sample) const { return area_from_mesh * sample.vector_area_m2; }
-  [[nodiscard]] double edges_m(const SurfaceSample& sample) const { return scale * sample.edges_m; }
+  [[nodiscard]] Patch place(const SurfaceSample& sample) const {
+    return {placed_from_mesh * sample.point + origin, area_from_mesh * sample.vector_area_m2, scale * sample.edges_m, sample.triangles};
+  }
 };
 
 /// How a part is drawn.
@@ -59,16 +59,20 @@ struct ImageSum {
 
   void add(const std::vector<SurfaceSample>& samples, const PlacedMesh& mesh, const PartStyle& style) {
     for (const SurfaceSample& sample : samples) {
-      const Vec3 point = mesh.point(sample);
-      if (!projection.sees(point)) continue;
-      const Vec3 vector_area_m2 = mesh.vector_area_m2(sample);
-      if (!style.double_sided && !(glm::dot(vector_area_m2, point) < 0.0)) continue;
-      sum[Term::kOnScreenTriangles] += sample.triangles;
-      sum[Term::kEdgePixels] +=
-          std::min(projection.edge_pixels(point, vector_area_m2, mesh.edges_m(sample)), most_edge_pixels * sample.triangles);
-      const Vec2 place = Vec2(point.x, -point.y) * (projection.focal_px / -point.z);
-      coverage.add(style.kind, place.x + 0.5 * camera.width, place.y + 0.5 * camera.height, projection.pixels(point, vector_area_m2));
+      const Patch patch = mesh.place(sample);
+      if (!style.double_sided && !(glm::dot(patch.vector_area_m2, patch.centre) < 0.0)) continue;
+      for_each_small_part(patch, [&](const Patch& part) {
+        if (projection.sees(part.centre)) add(part, style.kind);
+      });
     }
+  }
+
+ private:
+  void add(const Patch& part, PixelKind kind) {
+    sum[Term::kOnScreenTriangles] += part.triangles;
+    sum[Term::kEdgePixels] += std::min(projection.edge_pixels(part), most_edge_pixels * part.triangles);
+    const Vec2 place = Vec2(part.centre.x, -part.centre.y) * (projection.focal_px / -part.centre.z);
+    coverage.add(kind, place.x + 0.5 * camera.width, place.y + 0.5 * camera.height, projection.pixels(part.centre, part.vector_area_m2));
   }
 };
 
@@ -82,7 +86,7 @@ struct BoxSum {
 
   void add(const std::vector<SurfaceSample>& samples, const PlacedMesh& mesh, const PartStyle& style) {
     for (const SurfaceSample& sample : samples) {
-      const MostInImage most = projection.most(mesh.point(sample), mesh.vector_area_m2(sample), mesh.edges_m(sample), style.double_sided);
+      const MostInImage most = projection.most(mesh.place(sample), style.double_sided);
       if (!most.faces) continue;
       triangles += sample.triangles;
       edge_pixels += std::min(most.edge_pixels, most_edge_pixels * sample.triangles);

@@ -81,6 +81,16 @@ void drop_terms(const std::vector<TimedFrame>& frames, const std::vector<Rows>& 
 
 }  // namespace
 
+std::vector<TimedFrame> judged_first(std::vector<TimedFrame> frames) {
+  std::stable_partition(frames.begin(), frames.end(), [](const TimedFrame& frame) { return !frame.designed; });
+  return frames;
+}
+
+std::size_t judged_count(const std::vector<TimedFrame>& frames) {
+  const auto designed = std::find_if(frames.begin(), frames.end(), [](const TimedFrame& frame) { return frame.designed; });
+  return designed == frames.begin() ? frames.size() : static_cast<std::size_t>(designed - frames.begin());
+}
+
 Rows all_rows(std::size_t frames) {
   return rows_without(frames, {});
 }
@@ -120,13 +130,14 @@ FittedForm fit_form(const std::vector<TimedFrame>& frames, const Rows& rows, con
 }
 
 std::vector<Rows> folds_of(const std::vector<TimedFrame>& frames) {
+  const std::size_t judged = judged_count(frames);
   std::set<std::uint32_t> groups;
-  for (const TimedFrame& frame : frames) groups.insert(frame.group);
+  for (std::size_t row = 0; row < judged; ++row) groups.insert(frames[row].group);
   std::vector<Rows> folds;
   Rows dealt;
   for (const std::uint32_t group : groups) {
     Rows rows;
-    for (std::size_t row = 0; row < frames.size(); ++row)
+    for (std::size_t row = 0; row < judged; ++row)
       if (frames[row].group == group) rows.push_back(row);
     if (groups.size() < 2 || alone_with_a_term(frames, group))
       dealt.insert(dealt.end(), rows.begin(), rows.end());
@@ -144,7 +155,7 @@ std::vector<Rows> folds_of(const std::vector<TimedFrame>& frames) {
 }
 
 std::vector<HeldOut> held_out_predictions(const std::vector<TimedFrame>& frames, const std::vector<Rows>& folds, const ModelForm& form) {
-  std::vector<HeldOut> held_out(frames.size());
+  std::vector<HeldOut> held_out(judged_count(frames));
   for (const Rows& fold : folds) {
     const TimeModel model = fit_form(frames, rows_without(frames.size(), fold), form).model;
     for (const std::size_t row : fold) held_out[row] = {model.predicted_ms(frames[row].features), frames[row].milliseconds};

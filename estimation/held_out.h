@@ -26,15 +26,19 @@ struct FittedForm {
   FitResult fit;
 };
 
+/// Frames of the designed scene last. They are in every fit and never judged, unless there are no others.
+[[nodiscard]] std::vector<TimedFrame> judged_first(std::vector<TimedFrame> frames);
+[[nodiscard]] std::size_t judged_count(const std::vector<TimedFrame>& judged_first);
+
 [[nodiscard]] Rows all_rows(std::size_t frames);
 [[nodiscard]] Rows rows_without(std::size_t frames, const Rows& fold);
 [[nodiscard]] FitProblem problem_of(const std::vector<TimedFrame>& frames, const Rows& rows, const TermSet& terms);
 [[nodiscard]] FittedForm fit_form(const std::vector<TimedFrame>& frames, const Rows& rows, const ModelForm& form);
 
-/// The rows of each fold: one scene after the other, so that the error is that on an unseen scene; the frames of a scene that no other can
-/// stand in for are dealt to five folds at random.
+/// The judged rows of each fold: one scene after the other, so that the error is that on an unseen scene; the frames of a scene that no other
+/// can stand in for are dealt to five folds at random. Here and below, frames are as judged_first() has them.
 [[nodiscard]] std::vector<Rows> folds_of(const std::vector<TimedFrame>& frames);
-/// Every frame predicted by a fit to the other folds.
+/// Every judged frame predicted by a fit to all frames but those of its fold.
 [[nodiscard]] std::vector<HeldOut> held_out_predictions(const std::vector<TimedFrame>& frames, const std::vector<Rows>& folds,
                                                         const ModelForm& form);
 /// Mean relative error, each frame's at most 1.

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::string_view kFormat = "# standin.samples 2";
 
-constexpr std::size_t kOwnColumns = 5;  // before the features
+constexpr std::size_t kOwnColumns = 6;  // before the features
 
 std::string text_of(double value) {
   char text[32];
@@ -29,7 +29,7 @@ std::string one_line(std::string text) {
 }
 
 std::string header() {
-  std::string row = "group,milliseconds,spread,seconds,passed_pixels";
+  std::string row = "group,designed,milliseconds,spread,seconds,passed_pixels";
   for (std::size_t i = 0; i < kTermCount; ++i) row += "," + std::string(term_name(static_cast<Term>(i)));
   return row;
 }
@@ -90,10 +90,11 @@ TimedFrame read_frame(const Lines& lines, std::string_view row) {
     lines.fail(std::to_string(cells.size()) + " columns violate: " + std::to_string(kTermCount + kOwnColumns) + ", as in the header");
   TimedFrame frame;
   frame.group = read_number<std::uint32_t>(lines, cells[0]);
-  frame.milliseconds = read_number<double>(lines, cells[1]);
-  frame.spread = read_number<double>(lines, cells[2]);
-  frame.seconds = read_number<double>(lines, cells[3]);
-  frame.passed_pixels = read_number<double>(lines, cells[4]);
+  frame.designed = read_number<std::uint32_t>(lines, cells[1]) != 0;
+  frame.milliseconds = read_number<double>(lines, cells[2]);
+  frame.spread = read_number<double>(lines, cells[3]);
+  frame.seconds = read_number<double>(lines, cells[4]);
+  frame.passed_pixels = read_number<double>(lines, cells[5]);
   for (std::size_t i = 0; i < kTermCount; ++i) frame.features.value[i] = read_number<double>(lines, cells[i + kOwnColumns]);
   return frame;
 }
@@ -106,7 +107,7 @@ void write_samples(const CalibrationSamples& samples, const std::filesystem::pat
                      "\n# gl_version: " + one_line(machine.gl_version) + "\n# processor: " + one_line(machine.processor) +
                      "\n# reference_ms: " + text_of(machine.reference_ms) + "\n# clock: " + one_line(machine.clock) + "\n" + header() + "\n";
   for (const TimedFrame& frame : samples.frames) {
-    text += std::to_string(frame.group);
+    text += std::to_string(frame.group) + (frame.designed ? ",1" : ",0");
     for (const double value : {frame.milliseconds, frame.spread, frame.seconds, frame.passed_pixels}) text += "," + text_of(value);
     for (const double value : frame.features.value) text += "," + text_of(value);
     text += "\n";

@@ -249,12 +249,12 @@ class Source {
 
 }  // namespace
 
-std::vector<TimedFrame> sample_frames(std::span<const Scene> scenes, Context& context, FrameTimer& timer, const Camera& camera,
+std::vector<TimedFrame> sample_frames(std::span<const TrainingScene> scenes, Context& context, FrameTimer& timer, const Camera& camera,
                                       const CalibrationOptions& options, const Enough& enough, const WorkBudget& budget) {
   if (!(options.seconds > 0.0)) throw Failure(ErrorWord::kBadUsage, "calibration seconds are " + std::to_string(options.seconds));
   if (scenes.empty()) throw Failure(ErrorWord::kBadUsage, "calibration: no scene to time");
   std::deque<Source> sources;
-  for (const Scene& scene : scenes) sources.emplace_back(scene, context, camera, options.seed, budget);
+  for (const TrainingScene& one : scenes) sources.emplace_back(one.scene, context, camera, options.seed, budget);
   std::vector<TimedFrame> frames;
   double spent_s = 0.0, next_look_s = kLookEvery_s;
   while (spent_s < options.seconds && frames.size() < kMaxFrames * scenes.size()) {
@@ -263,6 +263,7 @@ std::vector<TimedFrame> sample_frames(std::span<const Scene> scenes, Context& co
     const auto source = std::min_element(sources.begin(), sources.end(), [](const Source& a, const Source& b) { return a.share() < b.share(); });
     frames.push_back(source->next(timer, options.count_passed_pixels));
     frames.back().group = static_cast<std::uint32_t>(source - sources.begin());
+    frames.back().designed = scenes[frames.back().group].designed;
     frames.back().seconds = spent_s += frames.back().seconds;
     if (spent_s < next_look_s) continue;
     next_look_s += kLookEvery_s;

@@ -245,7 +245,8 @@ json curves_json(const Surveyed& job, const JobSpec& spec, const Subdivision& su
   const World& world = job.world;
   const TimeModel& model = job.target.model;
   const std::vector<double> laps = clock.laps("view_space");
-  return {{"visibility", visibility_curve(world, spec, budget)},
+  return {{"estimator", estimator_curve(job.target)},
+          {"visibility", visibility_curve(world, spec, budget)},
           {"view_space", view_space_curve(world, model, subdivision, laps.back() - laps[laps.size() - 2],
                                           model.predicted_budget_ms(spec.budget_ms), job.survey.worst_frame_ms, budget)},
           {"select", select_curve(selected, clock)},
@@ -339,6 +340,7 @@ JobOutcome run_survey(const JobFiles& files, const JobSpec& spec, const WorkBudg
   outcome.metrics = common_metrics(job, clock);
   outcome.metrics["causes"] = causes_json(job.world, job.reach.subdivision, job.target.model);
   outcome.metrics["heat_map"] = heat_map_json(job.reach.subdivision, nullptr, job.target.model);
+  outcome.metrics["curves"] = {{"estimator", estimator_curve(job.target)}};
   if (spec.budget_ms > 0.0) outcome.metrics["budget_ms"] = spec.budget_ms;
   if (!folder) return outcome;
   folder->write("metrics.json", outcome.metrics.dump(1));

@@ -13,26 +13,29 @@
 namespace standin {
 namespace {
 
-std::vector<Scene> named_scenes(const CommandContext& context) {
-  std::vector<Scene> scenes;
-  for (const auto& file : context.arguments.scenes) scenes.push_back(load_scene(file, load_options(context.spec)));
-  return scenes;
-}
-
 // The scenes that were named, or cities that differ in seed, size and triangles per object.
-std::vector<Scene> real_scenes(const CommandContext& context) {
-  std::vector<Scene> scenes = named_scenes(context);
+std::vector<TrainingScene> real_scenes(const CommandContext& context) {
+  std::vector<TrainingScene> scenes;
+  for (const auto& file : context.arguments.scenes) scenes.push_back({load_scene(file, load_options(context.spec))});
   if (!scenes.empty()) return scenes;
-  scenes.push_back(make_city({300, 500'000, 101}));
-  scenes.push_back(make_city({900, 700'000, 102}));
-  scenes.push_back(make_city({1500, 2'950'000, 103}));
+  scenes.push_back({make_city({300, 500'000, 101})});
+  scenes.push_back({make_city({900, 700'000, 102})});
+  scenes.push_back({make_city({1500, 2'950'000, 103})});
   return scenes;
 }
 
-// What real scenes leave confounded, the designed one tells apart.
-std::vector<Scene> training_scenes(const CommandContext& context) {
-  std::vector<Scene> scenes = real_scenes(context);
-  scenes.push_back(make_designed_scene());
+// As CAD programs deliver theirs.
+Scene without_textures(Scene scene) {
+  for (Material& material : scene.materials) material.texture = -1;
+  scene.textures.clear();
+  return scene;
+}
+
+// What real scenes leave confounded, the designed one tells apart; and the bound is to hold for scenes without textures, too.
+std::vector<TrainingScene> training_scenes(const CommandContext& context) {
+  std::vector<TrainingScene> scenes = real_scenes(context);
+  scenes.push_back({without_textures(make_city({400, 600'000, 104}))});
+  scenes.push_back({make_designed_scene(), true});
   return scenes;
 }
 
@@ -44,7 +47,7 @@ CalibrationOptions options_of(const CommandContext& context) {
   return {.seconds = context.arguments.seconds, .seed = context.spec.seed, .count_passed_pixels = !context.arguments.samples.empty()};
 }
 
-CalibrationSamples time_samples(const std::vector<Scene>& scenes, const CommandContext& context, const Target* target) {
+CalibrationSamples time_samples(const std::vector<TrainingScene>& scenes, const CommandContext& context, const Target* target) {
   const JobSpec& spec = context.spec;
   const auto device = make_context(device_of(spec), spec.width, spec.height);
   TimingProtocol protocol{.warm_up = kCalibrationWarmUp, .repeats = kCalibrationRepeats};

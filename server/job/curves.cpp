@@ -58,6 +58,13 @@ double bytes_at(const World& world, const Impostor& impostor, const TexturePyram
 
 }  // namespace
 
+json estimator_curve(const Target& target) {
+  json curve = json::array();
+  for (const LearningPoint& learned : target.learning_curve)
+    curve.push_back(point(learned.seconds, learned.frames, learned.median_error, "median error of the predicted frame time, held out"));
+  return curve;
+}
+
 json visibility_curve(const World& world, const JobSpec& spec, const WorkBudget& budget) {
   json curve = json::array();
   if (world.visibility.cells.empty()) return curve;

@@ -16,6 +16,8 @@ namespace standin {
 
 /// All curves are lists of {seconds, work, error, unit}, in the order of `seconds`; empty where the stage did not run.
 
+/// Held-out median error of the target's time model, as its calibration learned. Work: timed frames.
+[[nodiscard]] nlohmann::json estimator_curve(const Target& target);
 /// Mean estimate of the missed share of rays, over at most 16 regions. Work: rays per region at most.
 [[nodiscard]] nlohmann::json visibility_curve(const World& world, const JobSpec& spec, const WorkBudget& budget);
 /// Highest bound of a region over the worst sampled view, by halvings in position. Work: cells. `subdivision`: the job's own, which took

@@ -17,12 +17,12 @@ const random = () => (state = (state * 1103515245 + 12345) % 2147483648) / 21474
 
 function samples(rows) {
   const lines = ["# standin.samples 2", "# device: osmesa", "# renderer: some renderer", "# gl_version: 4.5", "# processor: some processor",
-                 "# reference_ms: 2.5", "# clock: thread_cpu", ["group", "milliseconds", "spread", "seconds", "passed_pixels", ...kTerms].join()];
+                 "# reference_ms: 2.5", "# clock: thread_cpu", ["group", "designed", "milliseconds", "spread", "seconds", "passed_pixels", ...kTerms].join()];
   for (let i = 0; i < rows; ++i) {
     const size = 10 ** (-2 * random());
     const value = { frame: 1, draws: Math.floor(4000 * size * random()), triangles: Math.floor(1e6 * size * random()) };
     const ms = Object.entries(kCosts).reduce((sum, [term, cost]) => sum + cost * value[term], 0) * (1 + 0.02 * (random() - 0.5));
-    lines.push([i % 3, ms, 0.01, 0.1 * (i + 1), 0, ...kTerms.map((term) => value[term] ?? 0)].join());
+    lines.push([i % 3, 0, ms, 0.01, 0.1 * (i + 1), 0, ...kTerms.map((term) => value[term] ?? 0)].join());
   }
   return lines.join("\n") + "\n";
 }

@@ -127,6 +127,25 @@ TEST(Fit, ClampsATermThatWantsToBeNegative) {
   EXPECT_NE(fit.left_out[0].find("draws"), std::string::npos);
 }
 
+// What only the designed scene shows is learned from it, and what it would make of the error and the bound is nobody's concern.
+TEST(Fit, LearnsFromTheDesignedSceneAndIsJudgedByTheOthers) {
+  std::vector<TimedFrame> frames = synthetic(13, 300);
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    frames[i].group = static_cast<std::uint32_t>(i % 3);
+    frames[i].designed = i % 3 == 1;
+    if (!frames[i].designed) frames[i].features[Term::kMaskedPixels] = 0.0;
+    frames[i].milliseconds = true_ms(frames[i]) * (frames[i].designed && i % 2 == 0 ? 3.0 : 1.0);
+  }
+  const FitSummary fit = fit_time_model(frames, 0.99);
+  EXPECT_EQ(fit.frames, 300U);
+  const double masked = kTruth[static_cast<std::size_t>(Term::kMaskedPixels)];
+  EXPECT_NEAR(fit.model.milliseconds_per_unit[static_cast<std::size_t>(Term::kMaskedPixels)], masked, 0.05 * masked);
+  EXPECT_LT(fit.p90_error, 0.02);
+  EXPECT_LT(fit.model.bound_ms(10.0), 10.5);
+  for (TimedFrame& frame : frames) frame.designed = true;
+  EXPECT_GT(fit_time_model(frames, 0.99).model.bound_ms(10.0), 15.0) << "designed frames alone have to judge themselves";
+}
+
 TEST(Fit, NamesTermsThatTheFramesCannotSupport) {
   std::vector<TimedFrame> frames = synthetic(7, 300);
   for (TimedFrame& frame : frames) {

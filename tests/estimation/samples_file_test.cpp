@@ -25,6 +25,7 @@ CalibrationSamples random_samples(std::uint64_t seed, std::size_t count) {
     for (double& value : frame.features.value) value = std::pow(10.0, rng.uniform(-9.0, 9.0));
     frame.features[Term::kFrame] = 1.0;
     frame.milliseconds = 1e-3 * frame.features[Term::kDraws] + rng.uniform(0.1, 100.0);
+    frame.designed = i % 3 == 2;
     frame.spread = rng.uniform(0.0, 0.3);
     frame.seconds = 0.1 * static_cast<double>(i + 1);
     frame.passed_pixels = std::floor(rng.uniform(0.0, 1e6));
@@ -61,6 +62,7 @@ TEST_F(SamplesFile, ReadsBackBitForBit) {
   for (std::size_t i = 0; i < read.frames.size(); ++i) {
     EXPECT_EQ(read.frames[i].group, samples.frames[i].group);
     EXPECT_EQ(read.frames[i].milliseconds, samples.frames[i].milliseconds);
+    EXPECT_EQ(read.frames[i].designed, samples.frames[i].designed);
     EXPECT_EQ(read.frames[i].spread, samples.frames[i].spread);
     EXPECT_EQ(read.frames[i].seconds, samples.frames[i].seconds);
     EXPECT_EQ(read.frames[i].passed_pixels, samples.frames[i].passed_pixels);
@@ -99,8 +101,8 @@ TEST_F(SamplesFile, WhatIsWrongIsNamedWithItsLine) {
   };
   EXPECT_THAT(spoilt("samples 2", "samples 1"), HasSubstr("line 1"));
   EXPECT_THAT(spoilt("# renderer", "# vendor"), HasSubstr("line 3"));
-  EXPECT_THAT(spoilt("group,milliseconds", "scene,milliseconds"), HasSubstr("line 8"));
-  EXPECT_THAT(spoilt("\n1,", "\n1,2,"), HasSubstr("line 10: 17 columns"));
+  EXPECT_THAT(spoilt("group,designed", "scene,designed"), HasSubstr("line 8"));
+  EXPECT_THAT(spoilt("\n1,", "\n1,2,"), HasSubstr("line 10: 18 columns"));
   EXPECT_THAT(spoilt("\n1,", "\n1,nan"), HasSubstr("line 10"));
   EXPECT_THAT(spoilt("\n2,", "\n-2,"), HasSubstr("line 11: \"-2\" is not a finite number >= 0"));
   EXPECT_THAT(sentence_of(""), HasSubstr("line 1"));

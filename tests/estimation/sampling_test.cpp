@@ -35,7 +35,7 @@ class Sampling : public ::testing::Test {
   }
 
   Camera camera_{.width = 64, .height = 64};
-  std::vector<Scene> scenes_ = {small_scene(), make_designed_scene()};
+  std::vector<TrainingScene> scenes_ = {{small_scene()}, {make_designed_scene(), true}};
   std::unique_ptr<Context> context_ = make_context(DeviceKind::kOsMesa, 64, 64);
 };
 
@@ -43,7 +43,7 @@ TEST_F(Sampling, FindsTheCostsOfAFakeDevice) {
   const std::vector<TimedFrame> frames = sample(10.0, 1);
   ASSERT_GE(frames.size(), 100U);
   for (std::size_t i = 0; i < frames.size(); ++i) {
-    EXPECT_LT(frames[i].group, 2U);
+    EXPECT_EQ(frames[i].designed, frames[i].group == 1);
     EXPECT_GT(frames[i].seconds, i > 0 ? frames[i - 1].seconds : 0.0);
   }
   const FitSummary fit = fit_time_model(frames, 0.95);
