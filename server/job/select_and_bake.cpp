@@ -120,7 +120,7 @@ class Rounds {
         model_(model),
         budget_ms_(budget_ms),
         budget_(budget),
-        margins_{1.0, sizes.quads_margin, sizes.bytes_margin},
+        margins_{1.0, sizes.quads_margin, sizes.texels_margin},
         baker_(world, candidates.candidates) {
     result_.atlas_pages = 1;
     result_.page_switch_ms = page_switches_ms(model_, 1);
