@@ -1,44 +1,9 @@
 #include "placement/candidates/outlines.h"
 
-#include <array>
+#include "render/scene/extreme_points.h"
 
 namespace standin {
 namespace {
-
-/// To the faces, edges and corners of a cube, one of each opposite pair.
-constexpr std::array<std::array<double, 3>, 13> kDirections = {{{1, 0, 0},
-                                                                {0, 1, 0},
-                                                                {0, 0, 1},
-                                                                {1, 1, 0},
-                                                                {1, -1, 0},
-                                                                {1, 0, 1},
-                                                                {1, 0, -1},
-                                                                {0, 1, 1},
-                                                                {0, 1, -1},
-                                                                {1, 1, 1},
-                                                                {1, 1, -1},
-                                                                {1, -1, 1},
-                                                                {1, -1, -1}}};
-
-/// The first of the points that lie farthest along each direction, and against it; each point once.
-template <class Points>
-std::vector<Vec3> extreme_points(const Points& points) {
-  std::array<std::size_t, 2 * kDirections.size()> chosen{};
-  for (std::size_t d = 0; d < kDirections.size(); ++d) {
-    const Vec3 direction(kDirections[d][0], kDirections[d][1], kDirections[d][2]);
-    double least = std::numeric_limits<double>::infinity(), most = -least;
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      const double along = glm::dot(direction, Vec3(points[i]));
-      if (along < least) least = along, chosen[2 * d] = i;
-      if (along > most) most = along, chosen[2 * d + 1] = i;
-    }
-  }
-  std::sort(chosen.begin(), chosen.end());
-  std::vector<Vec3> extremes;
-  for (std::size_t k = 0; k < chosen.size() && !points.empty(); ++k)
-    if (k == 0 || chosen[k] != chosen[k - 1]) extremes.emplace_back(points[chosen[k]]);
-  return extremes;
-}
 
 std::vector<Vec3> outline_of(const Object& object, const Scene& scene, const std::vector<std::vector<Vec3>>& of_mesh) {
   std::vector<Vec3> points;

@@ -5,8 +5,8 @@
 //
 // `sample` generates candidates as the survey does (regions above `share` of the worst predicted time), bakes a spread of them and writes
 // what was known before beside what came out. `compare` judges, scene by scene: the default model; a model fitted on all other files; the
-// default fitted on 48 bakes of the scene, judged on the rest, as place does. Last it prints the laws fitted on all files, which
-// default_size_model() holds.
+// default fitted on 48 bakes of the scene, judged on the rest, as place does; and the proven lower bound. Last it prints the laws fitted on
+// all files, which default_size_model() holds.
 #include <cmath>
 #include <cstdio>
 #include <fstream>
@@ -16,6 +16,7 @@
 
 #include "placement/candidates/size_model.h"
 #include "render/base/error.h"
+#include "render/impostor/size_bound.h"
 #include "render/impostor/texture_pyramid.h"
 #include "server/job/job_spec.h"
 #include "server/job/world.h"
@@ -79,10 +80,17 @@ std::vector<Candidate> candidates_of(const World& world, const TimeModel& model,
       .candidates;
 }
 
-void print_row(const SizeSample& sample) {
-  const SizeInput& input = sample.input;
-  std::printf("%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g\n", input.silhouette_texels, input.block_texels, input.layers,
-              input.layers_crossed, input.cut_texels, sample.baked.bytes, sample.baked.texels, sample.baked.quads);
+struct Row {
+  SizeSample sample;
+  double least_bytes = 0.0;  // proven
+};
+
+void print_row(const Row& row) {
+  const auto& [input, baked] = row.sample;
+  for (const double value : {input.silhouette_texels, input.block_texels, input.layers, input.layers_crossed, input.cut_texels, baked.bytes,
+                             baked.texels, baked.quads})
+    std::printf("%.17g,", value);
+  std::printf("%.17g\n", row.least_bytes);
 }
 
 void sample(const Arguments& arguments) {
@@ -92,28 +100,41 @@ void sample(const Arguments& arguments) {
   StageClock clock(budget);
   build_world(arguments.scene, arguments.spec, clock, {}, world);
   const std::vector<Candidate> candidates = candidates_of(world, model, arguments, clock);
-  std::fprintf(stderr, "%zu candidates, seconds %s\n", candidates.size(), clock.seconds().dump().c_str());
   const ObjectOutlines outlines(world.scene);
   const TexturePyramids textures(world.scene);
-  for (const std::uint32_t id : spread_of_candidates(candidates, arguments.count, arguments.spec.seed))
-    if (const auto baked = bake_size_sample(world.scene, outlines, textures, candidates[id], world.camera, world.quality, {}))
-      print_row(*baked);
+  const SizeBound bound = clock.run("prepare_bound", [&] { return SizeBound(world.scene); });
+  for (const std::uint32_t id : spread_of_candidates(candidates, arguments.count, arguments.spec.seed)) {
+    const Candidate& candidate = candidates[id];
+    const auto baked = bake_size_sample(world.scene, outlines, textures, candidate, world.camera, world.quality, {});
+    const double least_bytes =
+        clock.run("bounds", [&] { return bound.texture_bytes(candidate.objects, candidate.view_cell, world.camera, world.quality); });
+    if (baked) print_row({*baked, least_bytes});
+  }
+  std::fprintf(stderr, "%zu candidates, seconds %s\n", candidates.size(), clock.seconds().dump().c_str());
 }
 
-std::vector<SizeSample> read_samples(const std::string& file) {
+std::vector<Row> read_rows(const std::string& file) {
   std::ifstream stream(file);
   if (!stream) throw Failure(ErrorWord::kFileMissing, file + " cannot be read");
-  std::vector<SizeSample> samples;
+  std::vector<Row> rows;
   for (std::string line; std::getline(stream, line);) {
     std::ranges::replace(line, ',', ' ');
     std::istringstream fields(line);
-    SizeSample row;
-    fields >> row.input.silhouette_texels >> row.input.block_texels >> row.input.layers >> row.input.layers_crossed >>
-        row.input.cut_texels >> row.baked.bytes >> row.baked.texels >> row.baked.quads;
+    Row row;
+    auto& [input, baked] = row.sample;
+    for (double* value : {&input.silhouette_texels, &input.block_texels, &input.layers, &input.layers_crossed, &input.cut_texels,
+                          &baked.bytes, &baked.texels, &baked.quads, &row.least_bytes})
+      fields >> *value;
     if (!fields) throw Failure(ErrorWord::kFileBroken, file + ": \"" + line + "\"");
-    samples.push_back(row);
+    rows.push_back(row);
   }
-  if (samples.size() <= kShippedBakes) throw Failure(ErrorWord::kFileBroken, file + " holds too few samples: more than 48 are needed");
+  if (rows.size() <= kShippedBakes) throw Failure(ErrorWord::kFileBroken, file + " holds too few samples: more than 48 are needed");
+  return rows;
+}
+
+std::vector<SizeSample> samples_of(const std::vector<Row>& rows) {
+  std::vector<SizeSample> samples;
+  for (const Row& row : rows) samples.push_back(row.sample);
   return samples;
 }
 
@@ -183,9 +204,27 @@ void split(std::span<const SizeSample> all, std::vector<SizeSample>& fitted, std
   }
 }
 
+void print_bounds(const std::string& scene, const std::vector<Row>& rows) {
+  std::vector<double> ratios, real;
+  for (const Row& row : rows) {
+    ratios.push_back(row.least_bytes / row.sample.baked.bytes);
+    real.push_back(row.sample.baked.bytes);
+  }
+  std::vector<double> large_ratios;
+  for (std::size_t i = 0; i < real.size(); ++i)
+    if (real[i] >= quantile(real, 0.75)) large_ratios.push_back(ratios[i]);
+  std::printf("| %s | %.3f | %.3f | %.3f | %.3f | %.3f |\n", scene.c_str(), quantile(ratios, 0.1), quantile(ratios, 0.5),
+              quantile(ratios, 0.9), quantile(ratios, 1.0), quantile(large_ratios, 0.5));
+}
+
 void compare(const std::vector<std::string>& files) {
   std::vector<std::vector<SizeSample>> scenes;
-  for (const std::string& file : files) scenes.push_back(read_samples(file));
+  std::printf("| scene | lower bound / real: p10 | median | p90 | max | largest quarter's median |\n|---|---|---|---|---|---|\n");
+  for (const std::string& file : files) {
+    const std::vector<Row> rows = read_rows(file);
+    print_bounds(file, rows);
+    scenes.push_back(samples_of(rows));
+  }
   std::printf("| scene | model | judged | bytes: median | p90 | largest quarter's median | rank corr. | texels: | | | | quads: | | | |\n");
   std::printf("|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
   std::vector<SizeSample> all;
