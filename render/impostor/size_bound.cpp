@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "render/impostor/atlas.h"
 #include "render/impostor/mesh_shape.h"
@@ -102,15 +103,20 @@ bool are_apart(const Polygon& a, const Polygon& b) {
 }
 
 /// Of faces that do not overlap, chosen from the largest on.
-double covered_area(std::vector<Polygon>& polygons) {
-  std::stable_sort(polygons.begin(), polygons.end(), [](const Polygon& a, const Polygon& b) { return a.area > b.area; });
-  std::size_t chosen = 0;
+double covered_area(const std::vector<Polygon>& polygons) {
+  std::vector<std::uint32_t> order(polygons.size());
+  std::iota(order.begin(), order.end(), 0U);
+  const auto tried = order.begin() + static_cast<std::ptrdiff_t>(std::min(polygons.size(), kMostFaces));
+  std::partial_sort(order.begin(), tried, order.end(), [&](std::uint32_t a, std::uint32_t b) {
+    return polygons[a].area != polygons[b].area ? polygons[a].area > polygons[b].area : a < b;
+  });
+  auto chosen = order.begin();
   double area = 0.0;
-  for (std::size_t i = 0; i < std::min(polygons.size(), kMostFaces); ++i) {
-    const auto end = polygons.begin() + static_cast<std::ptrdiff_t>(chosen);
-    if (!std::all_of(polygons.begin(), end, [&](const Polygon& other) { return are_apart(polygons[i], other); })) continue;
-    area += polygons[i].area;
-    polygons[chosen++] = polygons[i];
+  for (auto face = order.begin(); face != tried; ++face) {
+    const auto is_apart = [&](std::uint32_t other) { return are_apart(polygons[*face], polygons[other]); };
+    if (!std::all_of(order.begin(), chosen, is_apart)) continue;
+    area += polygons[*face].area;
+    *chosen++ = *face;
   }
   return area;
 }

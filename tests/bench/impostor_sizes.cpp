@@ -102,12 +102,17 @@ void sample(const Arguments& arguments) {
   const std::vector<Candidate> candidates = candidates_of(world, model, arguments, clock);
   const ObjectOutlines outlines(world.scene);
   const TexturePyramids textures(world.scene);
-  const SizeBound bound = clock.run("prepare_bound", [&] { return SizeBound(world.scene); });
+  const SizeBound bound = clock.run("prepare_bounds", [&] { return SizeBound(world.scene); });
+  clock.run("bounds", [&] {
+    double sum = 0.0;
+    for (const Candidate& candidate : candidates)
+      sum += bound.texture_bytes(candidate.objects, candidate.view_cell, world.camera, world.quality);
+    return sum;
+  });
   for (const std::uint32_t id : spread_of_candidates(candidates, arguments.count, arguments.spec.seed)) {
     const Candidate& candidate = candidates[id];
     const auto baked = bake_size_sample(world.scene, outlines, textures, candidate, world.camera, world.quality, {});
-    const double least_bytes =
-        clock.run("bounds", [&] { return bound.texture_bytes(candidate.objects, candidate.view_cell, world.camera, world.quality); });
+    const double least_bytes = bound.texture_bytes(candidate.objects, candidate.view_cell, world.camera, world.quality);
     if (baked) print_row({*baked, least_bytes});
   }
   std::fprintf(stderr, "%zu candidates, seconds %s\n", candidates.size(), clock.seconds().dump().c_str());
