@@ -229,9 +229,12 @@ json memory_json(const Placement& placement, const ImpostorSet& set) {
 
 json bound_json(const SelectionSummary& summary) {
   const double gap = summary.bytes > 0.0 ? (summary.bytes - summary.lower_bound_bytes) / summary.bytes : 0.0;
-  return {{"memory_lower_bound_bytes", summary.lower_bound_bytes},
-          {"gap_estimated", gap},
-          {"holds_for", "this candidate set, these CPVs and this time bound; bytes of candidates that were not baked are estimates"}};
+  return {
+      {"memory_lower_bound_bytes", summary.lower_bound_bytes},
+      {"gap", gap},
+      {"holds_for",
+       "this candidate set, these CPVs and this time bound; bytes are real where a candidate was baked and a proven lower bound where not, "
+       "drawing times of those that were not baked are estimates"}};
 }
 
 json cpv_json(const Placement& placement) {

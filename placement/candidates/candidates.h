@@ -28,15 +28,19 @@ struct CandidateOptions {
   int threads = 1;
 };
 
-/// Memory and drawing cost from a sketch (layers, texture size, what is in it), fitted on real bakes of the scene at hand: the paper's
-/// two-variable heuristic (5.8.1), ours in log space. bytes = exp(b0 + b1 log S + b2 log N), S: silhouette texels, N: layers; quads
-/// likewise.
+/// exp(b0 + b1 log S + b2 log n + b3 log N + b4 (1 - 1/n) log((C + 2) / S)), with the variables of SizeInput (size_model.h); of bytes S'
+/// in the place of S.
+using SizeLaw = std::array<double, 5>;
+
+/// Memory and drawing cost from a sketch (layers, texture size, what is in it), fitted on real bakes: the paper's heuristic (5.8.1), ours
+/// in log space.
 struct SizeModel {
-  std::array<double, 3> log_bytes{};
-  std::array<double, 3> log_quads{};
+  SizeLaw log_bytes{};
+  SizeLaw log_texels{};  // drawn, without gutters
+  SizeLaw log_quads{};
   // What bakes exceed their estimates by at most, in 9 of 10 cases, >= 1. Bytes are what is minimised and stay unbiased; the drawing cost
   // is a promise to every region an impostor serves, and a little caution there costs next to nothing.
-  double bytes_margin = 1.0;
+  double texels_margin = 1.0;
   double quads_margin = 1.0;
   double median_error = 0.0;  // held out, relative, of bytes
   std::uint32_t bakes = 0;
@@ -67,7 +71,7 @@ struct CandidateSet {
 [[nodiscard]] SizeModel fit_size_model(const Scene& scene, const std::vector<Candidate>& candidates, const Camera& camera,
                                        const BakeQuality& quality, std::uint32_t count, std::uint64_t seed, int threads,
                                        const WorkBudget& budget);
-/// A size model to start from, before anything was baked.
+/// A size model to start from, before anything was baked: fitted on other scenes.
 [[nodiscard]] SizeModel default_size_model();
 
 /// Lowest predicted time each CPV can be brought to by any disjoint candidates (tree DP: V(node) = max(best own gain, sum of V(children))),

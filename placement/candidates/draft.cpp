@@ -32,11 +32,12 @@ std::optional<ViewCell> view_cell_around(const DraftContext& context, const Box&
 }
 
 // The sketch's number of layers may be off by a few: near the limit only the full plan knows, and what is selected must be bakeable.
-bool can_be_baked(const DraftContext& context, const Box& object_bounds, const ViewCell& view_cell, const ImpostorSketch& sketch) {
+bool can_be_baked(const DraftContext& context, const Box& object_bounds, std::span<const Vec3> points, const ViewCell& view_cell,
+                  const ImpostorSketch& sketch) {
   constexpr double kSure = 0.9;
   if (!std::isfinite(sketch.layers)) return false;
   return sketch.layers <= kSure * context.quality.max_layers ||
-         plan_impostor(object_bounds, view_cell, context.camera, context.quality).possible;
+         plan_impostor(object_bounds, points, view_cell, context.camera, context.quality).possible;
 }
 
 }  // namespace
@@ -47,17 +48,18 @@ std::optional<Draft> draft_candidate(const DraftContext& context, std::uint32_t 
   for (const std::uint32_t object : objects) bounds.extend(context.scene.objects[object].bounds);
   const auto view_cell = view_cell_around(context, bounds, cells);
   if (!view_cell) return std::nullopt;
-  const ImpostorSketch sketch = sketch_impostor(bounds, *view_cell, context.camera, context.quality);
-  if (!can_be_baked(context, bounds, *view_cell, sketch)) return std::nullopt;
+  const std::vector<Vec3> points = context.outlines.of(objects);
+  const ImpostorSketch sketch = sketch_impostor(bounds, points, *view_cell, context.camera, context.quality);
+  if (!can_be_baked(context, bounds, points, *view_cell, sketch)) return std::nullopt;
 
-  const SizeEstimate size = estimate_size(context.sizes, size_input(context.scene, objects, bounds, *view_cell, sketch));
+  const SizeEstimate size = estimate_size(context.sizes, size_input(context.scene, context.outlines, objects, sketch));
   Draft draft;
   draft.candidate = {node, *view_cell, cells, std::move(objects), size.bytes, {}};
   // Texels are chosen so that the nearest layer is not magnified from the nearest point of the view cell.
-  draft.candidate.cost = {size.quads, size.bytes / 4.0, context.quality.texel_scale / context.camera.focal_px()};
+  draft.candidate.cost = {size.quads, size.texels, context.quality.texel_scale / context.camera.focal_px()};
   ImpostorCost cautious = draft.candidate.cost;
   cautious.quads *= context.sizes.quads_margin;
-  cautious.texels *= context.sizes.bytes_margin;
+  cautious.texels *= context.sizes.texels_margin;
   draft.cost = context.model.cost(impostor_features_bound(cautious, context.camera));
   return draft;
 }

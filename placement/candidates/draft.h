@@ -10,6 +10,7 @@
 #include "placement/candidates/candidates.h"
 #include "placement/candidates/cell_index.h"
 #include "placement/candidates/cell_sets.h"
+#include "placement/candidates/outlines.h"
 
 namespace standin {
 
@@ -19,6 +20,7 @@ struct DraftContext {
   const Hierarchy& hierarchy;
   const Subdivision& subdivision;
   const CellIndex& index;
+  const ObjectOutlines& outlines;
   const TimeModel& model;
   const SizeModel& sizes;
   const Camera& camera;

@@ -6,15 +6,15 @@
 #include <optional>
 
 #include "placement/candidates/size_model.h"
+#include "render/base/error.h"
 #include "render/base/parallel.h"
 #include "render/base/rng.h"
+#include "render/impostor/atlas.h"
 #include "render/impostor/texture_pyramid.h"
 
 namespace standin {
-namespace {
 
-/// One candidate from each of `count` equal strata by estimated bytes.
-std::vector<std::uint32_t> spread(const std::vector<Candidate>& candidates, std::uint32_t count, std::uint64_t seed) {
+std::vector<std::uint32_t> spread_of_candidates(const std::vector<Candidate>& candidates, std::uint32_t count, std::uint64_t seed) {
   std::vector<std::uint32_t> by_bytes(candidates.size());
   std::iota(by_bytes.begin(), by_bytes.end(), 0U);
   std::stable_sort(by_bytes.begin(), by_bytes.end(),
@@ -30,28 +30,34 @@ std::vector<std::uint32_t> spread(const std::vector<Candidate>& candidates, std:
   return chosen;
 }
 
-/// Nothing where the sketch was too hopeful, or where the bake shows nothing.
-std::optional<SizeSample> bake_sample(const Scene& scene, const TexturePyramids& textures, const Candidate& candidate, const Camera& camera,
-                                      const BakeQuality& quality, const WorkBudget& budget) {
+std::optional<SizeSample> bake_size_sample(const Scene& scene, const ObjectOutlines& outlines, const TexturePyramids& textures,
+                                           const Candidate& candidate, const Camera& camera, const BakeQuality& quality,
+                                           const WorkBudget& budget) {
   Box bounds;
   for (const std::uint32_t object : candidate.objects) bounds.extend(scene.objects[object].bounds);
-  const ImpostorSketch sketch = sketch_impostor(bounds, candidate.view_cell, camera, quality);
-  if (!std::isfinite(sketch.layers) || !plan_impostor(bounds, candidate.view_cell, camera, quality).possible) return std::nullopt;
-  const Impostor impostor = bake_layered(scene, textures, {candidate.objects, candidate.view_cell}, camera, quality, budget);
-  if (impostor.quads.empty() || impostor.texels.empty()) return std::nullopt;
-  return SizeSample{size_input(scene, candidate.objects, bounds, candidate.view_cell, sketch),
-                    {static_cast<double>(impostor.texels.size()), static_cast<double>(impostor.quads.size())}};
+  const ImpostorSketch sketch = sketch_impostor(bounds, outlines.of(candidate.objects), candidate.view_cell, camera, quality);
+  if (!std::isfinite(sketch.layers)) return std::nullopt;
+  try {
+    const Impostor impostor = bake_layered(scene, textures, {candidate.objects, candidate.view_cell}, camera, quality, budget);
+    if (impostor.quads.empty()) return std::nullopt;
+    return SizeSample{size_input(scene, outlines, candidate.objects, sketch),
+                      {static_cast<double>(texture_bytes(impostor)), static_cast<double>(impostor.texel_count()),
+                       static_cast<double>(impostor.quads.size())}};
+  } catch (const Failure& failure) {
+    if (failure.word() != ErrorWord::kImpostorImpossible) throw;
+    return std::nullopt;
+  }
 }
-
-}  // namespace
 
 SizeModel fit_size_model(const Scene& scene, const std::vector<Candidate>& candidates, const Camera& camera, const BakeQuality& quality,
                          std::uint32_t count, std::uint64_t seed, int threads, const WorkBudget& budget) {
-  const auto chosen = spread(candidates, count, seed);
+  const auto chosen = spread_of_candidates(candidates, count, seed);
+  const ObjectOutlines outlines(scene);
   const TexturePyramids textures(scene);
   std::vector<std::optional<SizeSample>> baked(chosen.size());
-  parallel_for(chosen.size(), threads, budget,
-               [&](std::size_t i) { baked[i] = bake_sample(scene, textures, candidates[chosen[i]], camera, quality, budget); });
+  parallel_for(chosen.size(), threads, budget, [&](std::size_t i) {
+    baked[i] = bake_size_sample(scene, outlines, textures, candidates[chosen[i]], camera, quality, budget);
+  });
   std::vector<SizeSample> samples;
   for (const auto& sample : baked)
     if (sample) samples.push_back(*sample);

@@ -121,7 +121,8 @@ CandidateSet generate_candidates(const Scene& scene, const Hierarchy& hierarchy,
                                  const WorkBudget& budget) {
   const CellIndex index(hierarchy, subdivision);
   const DirectionGrid grid(options.direction_step_deg, options.every_direction);
-  const DraftContext context{scene, hierarchy, subdivision, index, model, sizes, camera, quality, options.shape};
+  const ObjectOutlines outlines(scene);
+  const DraftContext context{scene, hierarchy, subdivision, index, outlines, model, sizes, camera, quality, options.shape};
   const int leaf_level = context.index.leaf_level();
   std::vector<CandidateSet> of_node(hierarchy.nodes.size());
   parallel_for(of_node.size(), options.threads, budget, [&](std::size_t node) {

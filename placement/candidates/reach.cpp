@@ -99,7 +99,8 @@ Reach reachable_times(const Scene& scene, const Hierarchy& hierarchy, const Subd
                       const SizeModel& sizes, const Camera& camera, const BakeQuality& quality, const CandidateOptions& options,
                       const WorkBudget& budget) {
   const CellIndex index(hierarchy, subdivision);
-  const DraftContext context{scene, hierarchy, subdivision, index, model, sizes, camera, quality, options.shape};
+  const ObjectOutlines outlines(scene);
+  const DraftContext context{scene, hierarchy, subdivision, index, outlines, model, sizes, camera, quality, options.shape};
   Reach reach;
   reach.predicted_ms.resize(subdivision.cpvs.size());
   reach.blockers.resize(subdivision.cpvs.size());

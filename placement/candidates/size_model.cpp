@@ -2,63 +2,135 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+
+#include "render/impostor/atlas.h"
 
 namespace standin {
 namespace {
 
-constexpr double kPriorSamples = 0.05;  // weight of the default slopes
+constexpr double kPriorSamples = 5.0;  // weight of the prior's slopes, against samples that spread by a factor e
+constexpr int kReweightings = 8;
+constexpr double kSmallDeviation = 0.05;  // deviations below it weigh as squares
 
 constexpr double kCautious = 0.9;  // share of bakes that stay within a margin
 
-using Coefficients = std::array<double, 3>;
+constexpr double kGutters = 2.0 * AtlasOptions{}.gutter;  // on both sides
 
-double predicted_log(const Coefficients& b, const SizeInput& input) {
-  return b[0] + b[1] * std::log(input.silhouette_texels) + b[2] * std::log(input.layers);
+constexpr std::size_t kSlopes = 4;
+using Row = std::array<double, kSlopes>;
+
+/// What the slopes multiply. The last is 0 where an object lies in one layer: nothing is cut.
+Row row_of(const SizeInput& input, double silhouette_texels) {
+  const double cut = std::log((input.cut_texels + 2.0) / silhouette_texels);
+  return {std::log(silhouette_texels), std::log(input.layers_crossed), std::log(input.layers), (1.0 - 1.0 / input.layers_crossed) * cut};
+}
+Row row_without_gutters(const SizeInput& input) {
+  return row_of(input, input.silhouette_texels);
+}
+Row row_with_gutters(const SizeInput& input) {
+  return row_of(input, input.block_texels);
 }
 
-/// Area of a box's shadow along a unit direction.
-double projected_area_m2(const Box& box, const Vec3& direction) {
-  const Vec3 size = box.size();
-  return std::abs(direction.x) * size.y * size.z + std::abs(direction.y) * size.x * size.z + std::abs(direction.z) * size.x * size.y;
+double predicted_log(const SizeLaw& law, const Row& row) {
+  double sum = law[0];
+  for (std::size_t i = 0; i < kSlopes; ++i) sum += law[i + 1] * row[i];
+  return sum;
 }
 
-/// From the objects to the viewers.
-Vec3 viewing_direction(const Box& object_bounds, const ViewCell& cell) {
-  if (const auto* shaft = std::get_if<Shaft>(&cell)) return shaft->axis;
-  const Vec3 towards = std::get<Box>(cell).centre() - object_bounds.centre();
-  const double length = glm::length(towards);
-  return length > 0.0 ? towards / length : Vec3(0.0, 0.0, 1.0);
-}
-
-/// Normal equations about the prior slopes; `skip` leaves one sample out.
-template <class Target>
-Coefficients fit(std::span<const SizeSample> samples, std::size_t skip, const Coefficients& prior, Target&& log_target) {
-  Mat3 normal(0.0);
-  Vec3 right(0.0);
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    if (i == skip) continue;
-    const Vec3 row(1.0, std::log(samples[i].input.silhouette_texels), std::log(samples[i].input.layers));
-    normal += glm::outerProduct(row, row);
-    right += row * (log_target(samples[i]) - predicted_log(prior, samples[i].input));
+/// Solves A x = b for a symmetric A whose eigenvalues are at least kPriorSamples (Cholesky).
+Row solve(std::array<Row, kSlopes> a, Row b) {
+  for (std::size_t j = 0; j < kSlopes; ++j) {
+    for (std::size_t k = 0; k < j; ++k) a[j][j] -= a[j][k] * a[j][k];
+    a[j][j] = std::sqrt(a[j][j]);
+    for (std::size_t i = j + 1; i < kSlopes; ++i) {
+      for (std::size_t k = 0; k < j; ++k) a[i][j] -= a[i][k] * a[j][k];
+      a[i][j] /= a[j][j];
+    }
   }
-  for (int i = 0; i < 3; ++i) normal[i][i] += i == 0 ? 1e-9 : kPriorSamples;
-  const Vec3 change = glm::inverse(normal) * right;
-  return {prior[0] + change.x, prior[1] + change.y, prior[2] + change.z};
+  for (std::size_t i = 0; i < kSlopes; ++i) {
+    for (std::size_t k = 0; k < i; ++k) b[i] -= a[i][k] * b[k];
+    b[i] /= a[i][i];
+  }
+  for (std::size_t i = kSlopes; i-- > 0;) {
+    for (std::size_t k = i + 1; k < kSlopes; ++k) b[i] -= a[k][i] * b[k];
+    b[i] /= a[i][i];
+  }
+  return b;
 }
 
-double log_bytes(const SizeSample& sample) {
-  return std::log(sample.baked.bytes);
-}
-double log_quads(const SizeSample& sample) {
-  return std::log(sample.baked.quads);
+/// Samples of one target as the fit sees them.
+struct Observation {
+  Row row{};
+  double log_value = 0.0;
+  double weight = 1.0;
+};
+
+/// Weighted least squares about the prior. Variables are centred first, which leaves a system in the slopes alone: with the prior's weight
+/// on its diagonal it is positive definite whatever the samples are, and as well conditioned as they spread at most, so that Cholesky on
+/// the normal equations loses nothing that QR would keep.
+SizeLaw fit_weighted(std::span<const Observation> observations, const SizeLaw& prior) {
+  double total = 0.0, mean_rest = 0.0;
+  Row mean{};
+  for (const Observation& o : observations) {
+    total += o.weight;
+    mean_rest += o.weight * (o.log_value - predicted_log(prior, o.row));
+    for (std::size_t i = 0; i < kSlopes; ++i) mean[i] += o.weight * o.row[i];
+  }
+  mean_rest /= total;
+  for (double& m : mean) m /= total;
+
+  std::array<Row, kSlopes> normal{};
+  Row right{};
+  for (std::size_t i = 0; i < kSlopes; ++i) normal[i][i] = kPriorSamples;
+  for (const Observation& o : observations) {
+    const double rest = o.log_value - predicted_log(prior, o.row) - mean_rest;
+    for (std::size_t i = 0; i < kSlopes; ++i) {
+      const double weighted = o.weight * (o.row[i] - mean[i]);
+      right[i] += weighted * rest;
+      for (std::size_t k = 0; k < kSlopes; ++k) normal[i][k] += weighted * (o.row[k] - mean[k]);
+    }
+  }
+  const Row change = solve(normal, right);
+  SizeLaw law = prior;
+  law[0] += mean_rest;
+  for (std::size_t i = 0; i < kSlopes; ++i) {
+    law[i + 1] += change[i];
+    law[0] -= change[i] * mean[i];
+  }
+  return law;
 }
 
-/// baked / predicted by the model of all other samples.
-template <class Target>
-std::vector<double> held_out_ratios(std::span<const SizeSample> samples, const Coefficients& prior, Target&& log_target) {
+/// Least absolute deviations by reweighting: sizes are skewed (a slanted wall fills half its rectangle, and none fills twice), and what
+/// ranks candidates is the median. Weights keep their mean, so that the prior's share stays what it is.
+SizeLaw fit(std::vector<Observation> observations, const SizeLaw& prior) {
+  if (observations.empty()) return prior;
+  SizeLaw law = prior;
+  for (Observation& o : observations) o.weight = 1.0;
+  for (int round = 0; round < kReweightings; ++round) {
+    law = fit_weighted(observations, prior);
+    double sum = 0.0;
+    for (Observation& o : observations)
+      sum += o.weight = 1.0 / std::max(kSmallDeviation, std::abs(o.log_value - predicted_log(law, o.row)));
+    for (Observation& o : observations) o.weight *= static_cast<double>(observations.size()) / sum;
+  }
+  return law;
+}
+
+std::vector<Observation> observe(std::span<const SizeSample> samples, Row (*row)(const SizeInput&), double SizeEstimate::*target) {
+  std::vector<Observation> observations;
+  for (const SizeSample& sample : samples) observations.push_back({row(sample.input), std::log(sample.baked.*target)});
+  return observations;
+}
+
+/// baked / predicted by the law of all other samples.
+std::vector<double> held_out_ratios(const std::vector<Observation>& observations, const SizeLaw& prior) {
   std::vector<double> ratios;
-  for (std::size_t i = 0; i < samples.size(); ++i)
-    ratios.push_back(std::exp(log_target(samples[i]) - predicted_log(fit(samples, i, prior, log_target), samples[i].input)));
+  for (std::size_t i = 0; i < observations.size(); ++i) {
+    std::vector<Observation> others = observations;
+    others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
+    ratios.push_back(std::exp(observations[i].log_value - predicted_log(fit(std::move(others), prior), observations[i].row)));
+  }
   return ratios;
 }
 
@@ -73,42 +145,94 @@ double median_error(std::vector<double> ratios) {
   return quantile(std::move(ratios), 0.5);
 }
 
+double margin_of(const std::vector<double>& ratios) {
+  return std::max(1.0, quantile(ratios, kCautious));
+}
+
+/// What a set of points spans in slopes and depths from the sketch's viewpoint.
+struct Span {
+  Vec2 slope_min{std::numeric_limits<double>::infinity()};
+  Vec2 slope_max{-std::numeric_limits<double>::infinity()};
+  double near_m = std::numeric_limits<double>::infinity();
+  double far_m = 0.0;
+};
+
+Span span_of(std::span<const Vec3> points, const ImpostorFrame& frame) {
+  Span span;
+  for (const Vec3& point : points) {
+    const Vec3 offset = point - frame.reference_viewpoint;
+    const double depth_m = glm::dot(offset, frame.forward);
+    const Vec2 slope = Vec2(glm::dot(offset, frame.right), glm::dot(offset, frame.up)) / depth_m;
+    span.slope_min = glm::min(span.slope_min, slope);
+    span.slope_max = glm::max(span.slope_max, slope);
+    span.near_m = std::min(span.near_m, depth_m);
+    span.far_m = std::max(span.far_m, depth_m);
+  }
+  return span;
+}
+
+/// Whole texels, as the texture has them.
+Vec2 rectangle_of(const Vec2& texels) {
+  return glm::max(glm::ceil(texels - 1e-9), Vec2(1.0));
+}
+double area(const Vec2& rectangle, double gutters = 0.0) {
+  return (rectangle.x + gutters) * (rectangle.y + gutters);
+}
+
 }  // namespace
 
-SizeInput size_input(const Scene& scene, std::span<const std::uint32_t> objects, const Box& object_bounds, const ViewCell& cell,
+SizeInput size_input(const Scene& scene, const ObjectOutlines& outlines, std::span<const std::uint32_t> objects,
                      const ImpostorSketch& sketch) {
-  const Vec3 direction = viewing_direction(object_bounds, cell);
-  double area_m2 = 0.0;
-  for (const std::uint32_t object : objects) area_m2 += projected_area_m2(scene.objects[object].bounds, direction);
-  // The texture's box holds the whole cluster; the objects' share of it is their share of the cluster's shadow.
-  const double cluster_m2 = projected_area_m2(object_bounds, direction);
-  const double share = cluster_m2 > 0.0 ? std::min(1.0, area_m2 / cluster_m2) : 1.0;
-  return {std::max(1.0, share * sketch.width_texels * sketch.height_texels), std::max(1.0, sketch.layers)};
+  const double texel = sketch.frame.slope_step.x;
+  const double e_folds = std::log(sketch.far_m / sketch.near_m);
+  const double layers_per_e_fold = sketch.layers > 1.0 && e_folds > 0.0 ? sketch.layers / e_folds : 0.0;
+  SizeInput input{0.0, 0.0, sketch.layers, 0.0, 0.0};
+  for (const std::uint32_t object : objects) {
+    const Span span = span_of(outlines.of(object), sketch.frame);
+    const Vec2 rectangle = rectangle_of((span.slope_max - span.slope_min) / texel);
+    const double block = area(rectangle, kGutters);
+    input.silhouette_texels += area(rectangle);
+    input.block_texels += block;
+    input.layers_crossed += block * std::min(sketch.layers, 1.0 + layers_per_e_fold * std::log(span.far_m / span.near_m));
+    input.cut_texels += scene.objects[object].area_m2 / (span.near_m * span.far_m) * (layers_per_e_fold / texel);
+  }
+  input.layers_crossed = std::max(1.0, input.layers_crossed / input.block_texels);
+  const Vec2 whole(sketch.width_texels, sketch.height_texels);
+  input.silhouette_texels = std::min(input.silhouette_texels, area(whole));
+  input.block_texels = std::min(input.block_texels, area(whole, kGutters));
+  return input;
 }
 
 SizeEstimate estimate_size(const SizeModel& model, const SizeInput& input) {
-  return {std::max(4.0, std::exp(predicted_log(model.log_bytes, input))), std::max(1.0, std::exp(predicted_log(model.log_quads, input)))};
+  constexpr double kLeastBytes = 4.0 * (1.0 + kGutters) * (1.0 + kGutters);
+  const Row blocks = row_with_gutters(input), silhouette = row_without_gutters(input);
+  return {std::max(kLeastBytes, std::exp(predicted_log(model.log_bytes, blocks))),
+          std::max(1.0, std::exp(predicted_log(model.log_texels, silhouette))),
+          std::max(1.0, std::exp(predicted_log(model.log_quads, silhouette)))};
 }
 
-// Near texels = 1.25 (1.3 S + 1.5 N sqrt S) and quads = N (1 + 0.04 N), which reproduce thesis Table 4.1 within a quarter, for S of 1e3 to
-// 1e4 and N of 1 to 100.
+// `impostor_sizes compare` prints these, for a generated city, a town model, a building and two race tracks (tests/bench/impostor_sizes.md
+// has the commands). Bytes are 4 S' and drawn texels S, in one layer.
 SizeModel default_size_model() {
   SizeModel model;
-  model.log_bytes = {2.3, 0.9, 0.33};
-  model.log_quads = {0.04, 0.0, 1.34};
+  model.log_bytes = {1.406, 0.997, 0.627, 0.073, 0.309};
+  model.log_texels = {-0.004, 1.002, 0.495, 0.086, 0.359};
+  model.log_quads = {-0.303, 0.074, 0.570, 0.648, -0.117};
   return model;
 }
 
-SizeModel fit_sizes(std::span<const SizeSample> samples) {
-  SizeModel model = default_size_model();
+SizeModel fit_sizes(std::span<const SizeSample> samples, const SizeModel& prior) {
+  SizeModel model = prior;
   if (samples.empty()) return model;
-  const SizeModel prior = model;
-  model.log_bytes = fit(samples, samples.size(), prior.log_bytes, log_bytes);
-  model.log_quads = fit(samples, samples.size(), prior.log_quads, log_quads);
-  const auto bytes_ratios = held_out_ratios(samples, prior.log_bytes, log_bytes);
-  model.bytes_margin = std::max(1.0, quantile(bytes_ratios, kCautious));
-  model.quads_margin = std::max(1.0, quantile(held_out_ratios(samples, prior.log_quads, log_quads), kCautious));
-  model.median_error = median_error(bytes_ratios);
+  const auto bytes = observe(samples, row_with_gutters, &SizeEstimate::bytes);
+  const auto texels = observe(samples, row_without_gutters, &SizeEstimate::texels);
+  const auto quads = observe(samples, row_without_gutters, &SizeEstimate::quads);
+  model.log_bytes = fit(bytes, prior.log_bytes);
+  model.log_texels = fit(texels, prior.log_texels);
+  model.log_quads = fit(quads, prior.log_quads);
+  model.texels_margin = margin_of(held_out_ratios(texels, prior.log_texels));
+  model.quads_margin = margin_of(held_out_ratios(quads, prior.log_quads));
+  model.median_error = median_error(held_out_ratios(bytes, prior.log_bytes));
   model.bakes = static_cast<std::uint32_t>(samples.size());
   return model;
 }

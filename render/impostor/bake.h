@@ -57,9 +57,15 @@ struct ImpostorSketch {
   double width_texels = 0.0;
   double height_texels = 0.0;
   double distance_m = 0.0;  // of the object's centre from the reference viewpoint
+  ImpostorFrame frame;      // where possible
+  double near_m = 0.0;      // depths along `forward` between which the layers lie
+  double far_m = 0.0;
 };
 [[nodiscard]] ImpostorSketch sketch_impostor(const Box& object_bounds, const ViewCell& cell, const Camera& camera,
                                              const BakeQuality& quality);
+/// Texels and layers for points (the objects' vertices, or a few that span as much), as bake_layered plans.
+[[nodiscard]] ImpostorSketch sketch_impostor(const Box& object_bounds, std::span<const Vec3> points, const ViewCell& cell,
+                                             const Camera& camera, const BakeQuality& quality);
 
 /// Throws Failure(kImpostorImpossible) where plan_impostor says so. May return an impostor without quads (nothing visible).
 [[nodiscard]] Impostor bake_layered(const Scene& scene, const BakeRequest& request, const Camera& camera, const BakeQuality& quality,

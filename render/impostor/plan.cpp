@@ -184,6 +184,14 @@ Choice choose_viewpoint(const Box& object_bounds, const ViewCell& cell, const Ca
   return best;
 }
 
+/// Viewpoint by the box, texels and layers by the points; by the box as well where there are none.
+Choice fitted_to(const Choice& by_box, std::span<const Vec3> points, const Camera& camera, const BakeQuality& quality) {
+  if (!by_box.draft.possible() || points.empty()) return by_box;
+  Choice choice{by_box.viewpoint, draft_of(by_box.viewpoint, extent_of(points, by_box.viewpoint), camera, quality), kInfinity};
+  if (choice.draft.possible()) choice.layers = estimated_layer_count(choice.draft.setup);
+  return choice;
+}
+
 ImpostorPlan with_layers(const Draft& draft, std::uint32_t max_layers) {
   ImpostorPlan plan;
   plan.why_not = draft.why_not;
@@ -197,6 +205,20 @@ ImpostorPlan with_layers(const Draft& draft, std::uint32_t max_layers) {
   return plan;
 }
 
+ImpostorSketch sketch_of(const Choice& choice, const Box& object_bounds, std::uint32_t max_layers) {
+  const Draft& draft = choice.draft;
+  ImpostorSketch sketch;
+  sketch.layers = choice.layers <= max_layers ? choice.layers : kInfinity;
+  sketch.width_texels = draft.width;
+  sketch.height_texels = draft.height;
+  if (!draft.possible()) return sketch;
+  sketch.distance_m = glm::length(object_bounds.centre() - choice.viewpoint.frame.reference_viewpoint);
+  sketch.frame = draft.frame;
+  sketch.near_m = draft.setup.t0 + draft.setup.s;
+  sketch.far_m = sketch.near_m + draft.setup.depth;
+  return sketch;
+}
+
 }  // namespace
 
 ImpostorPlan plan_impostor(const Box& object_bounds, const ViewCell& cell, const Camera& camera, const BakeQuality& quality) {
@@ -205,19 +227,17 @@ ImpostorPlan plan_impostor(const Box& object_bounds, const ViewCell& cell, const
 
 ImpostorPlan plan_impostor(const Box& object_bounds, std::span<const Vec3> points, const ViewCell& cell, const Camera& camera,
                            const BakeQuality& quality) {
-  const Choice choice = choose_viewpoint(object_bounds, cell, camera, quality);
-  if (!choice.draft.possible() || points.empty()) return with_layers(choice.draft, quality.max_layers);
-  return with_layers(draft_of(choice.viewpoint, extent_of(points, choice.viewpoint), camera, quality), quality.max_layers);
+  return with_layers(fitted_to(choose_viewpoint(object_bounds, cell, camera, quality), points, camera, quality).draft, quality.max_layers);
 }
 
 ImpostorSketch sketch_impostor(const Box& object_bounds, const ViewCell& cell, const Camera& camera, const BakeQuality& quality) {
-  const Choice choice = choose_viewpoint(object_bounds, cell, camera, quality);
-  ImpostorSketch sketch;
-  sketch.layers = choice.layers <= quality.max_layers ? choice.layers : kInfinity;
-  sketch.width_texels = choice.draft.width;
-  sketch.height_texels = choice.draft.height;
-  if (choice.draft.possible()) sketch.distance_m = glm::length(object_bounds.centre() - choice.viewpoint.frame.reference_viewpoint);
-  return sketch;
+  return sketch_impostor(object_bounds, {}, cell, camera, quality);
+}
+
+ImpostorSketch sketch_impostor(const Box& object_bounds, std::span<const Vec3> points, const ViewCell& cell, const Camera& camera,
+                               const BakeQuality& quality) {
+  const Choice by_box = choose_viewpoint(object_bounds, cell, camera, quality);
+  return sketch_of(fitted_to(by_box, points, camera, quality), object_bounds, quality.max_layers);
 }
 
 }  // namespace standin

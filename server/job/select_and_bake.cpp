@@ -7,7 +7,9 @@
 #include <optional>
 
 #include "placement/candidates/selection_input.h"
+#include "render/base/parallel.h"
 #include "render/impostor/atlas.h"
+#include "render/impostor/size_bound.h"
 #include "server/job/baker.h"
 
 namespace standin {
@@ -120,7 +122,7 @@ class Rounds {
         model_(model),
         budget_ms_(budget_ms),
         budget_(budget),
-        margins_{1.0, sizes.quads_margin, sizes.bytes_margin},
+        margins_{1.0, sizes.quads_margin, sizes.texels_margin},
         baker_(world, candidates.candidates) {
     result_.atlas_pages = 1;
     result_.page_switch_ms = page_switches_ms(model_, 1);
@@ -175,6 +177,7 @@ class Rounds {
       update(Correction{});
       for (const Shortfall& shortfall : summary.unmet)
         problem_.deficit[shortfall.cpv] = 0.0;  // as the selection, it spends nothing on them
+      set_least_bytes();
       const SelectionConfig config{.bound_iterations = bound_iterations, .threads = world_.threads};
       summary.lower_bound_bytes = memory_lower_bound(problem_, summary.bytes, config, budget_);
     }
@@ -184,6 +187,18 @@ class Rounds {
 
  private:
   [[nodiscard]] SelectionBudget limits() const { return {model_.predicted_budget_ms(budget_ms_), result_.page_switch_ms}; }
+
+  // For the certificate: real bytes of what was baked, and no more than any bake could give of the rest.
+  void set_least_bytes() {
+    constexpr double kNothingProven = 1.0;  // a bake without quads is taken for as much
+    const SizeBound bound(world_.scene);
+    parallel_for(candidates_.candidates.size(), world_.threads, budget_, [&](std::size_t id) {
+      if (baker_.sizes()[id]) return;
+      const Candidate& candidate = candidates_.candidates[id];
+      const double least = bound.texture_bytes(candidate.objects, candidate.view_cell, world_.camera, world_.quality);
+      problem_.bytes[id] = std::max(kNothingProven, least);
+    });
+  }
 
   // Whether what is chosen fills more atlas pages than any choice so far.
   bool reserve_pages() {

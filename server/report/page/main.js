@@ -37,9 +37,8 @@ function cpvTile(metrics) {
 function memoryTile(metrics) {
   const memory = field(metrics, "memory.total_bytes");
   if (!isNumber(memory)) return null;
-  const gap = field(metrics, "bound.gap"), estimated = field(metrics, "bound.gap_estimated");
-  if (isNumber(gap)) return ["Memory of the impostors", bytes(memory), `at most ${percent(gap)} of it could be saved`];
-  return ["Memory of the impostors", bytes(memory), isNumber(estimated) ? `gap to the lower bound ${percent(estimated)}, over estimated costs` : ""];
+  const gap = field(metrics, "bound.gap");
+  return ["Memory of the impostors", bytes(memory), isNumber(gap) ? `at most ${percent(gap)} of it could be saved` : ""];
 }
 
 function reachTile(metrics) {

@@ -56,13 +56,12 @@ function framesSection({ metrics }) {
 function memorySection({ metrics, impostors }) {
   if (impostors.length === 0) return null;
   const memory = metrics.memory || {}, bound = metrics.bound || {};
-  const gap = isNumber(bound.gap) ? bound.gap : bound.gap_estimated;
   const rows = [
     ["textures, with gutters (the objective)", bytes(memory.texture_bytes)], ["geometry", bytes(memory.geometry_bytes)],
     ["unused space in the atlases", bytes(memory.atlas_padding_bytes)], ["total", bytes(memory.total_bytes)],
     ...Object.entries(memory.gpu_bytes || {}).map(([format, value]) => [`atlases as ${format.toUpperCase().replace("_", " ")} on a GPU (computed from their size)`, bytes(value)]),
     ["lower bound: no choice of these candidates needs less", bytes(bound.memory_lower_bound_bytes)],
-    [isNumber(bound.gap) ? "gap to the lower bound" : "gap to the lower bound, over estimated costs", percent(gap)],
+    ["gap to the lower bound", percent(bound.gap)],
   ].filter(([, value]) => value !== NONE);
   const totals = table([{ title: "memory", text: (row) => row[0] }, { title: "", number: true, text: (row) => row[1] }], rows, "Memory");
   return section("memory", "Memory, and where it goes", "", totals, memoryBreakdown(impostors), largestImpostors(impostors));

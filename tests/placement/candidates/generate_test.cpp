@@ -4,6 +4,7 @@
 #include <set>
 
 #include "placement/candidates/cell_index.h"
+#include "placement/candidates/outlines.h"
 #include "tests/placement/candidates/toy_world.h"
 
 namespace standin::test {
@@ -34,7 +35,8 @@ void check_candidate(const ToyWorld& world, const Candidate& candidate) {
   EXPECT_FALSE(candidate.cells.empty());
   EXPECT_TRUE(std::is_sorted(candidate.cells.begin(), candidate.cells.end()));
   for (const auto cell : candidate.cells) EXPECT_TRUE(encloses(candidate.view_cell, world.subdivision.cells[cell].box));
-  const auto sketch = sketch_impostor(bounds_of(world, candidate), candidate.view_cell, world.camera, world.quality);
+  const auto sketch = sketch_impostor(bounds_of(world, candidate), ObjectOutlines(world.scene).of(candidate.objects), candidate.view_cell,
+                                      world.camera, world.quality);
   EXPECT_LE(sketch.layers, world.quality.max_layers);
   EXPECT_GE(candidate.bytes, 4.0);
   EXPECT_GT(candidate.cost.quads, 0.0);

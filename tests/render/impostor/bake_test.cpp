@@ -128,6 +128,30 @@ TEST(Sketch, ForetellsThePlan) {
   EXPECT_TRUE(std::isinf(sketch_impostor({Vec3(-1), Vec3(1)}, shaft_towards_z(0.2, 1.0), Camera{}, {}).layers));
 }
 
+TEST(Sketch, OfPointsForetellsThePlanOfPoints) {
+  Rng rng(4);
+  const BakeQuality quality{.max_layers = 100000};
+  for (int i = 0; i < 100; ++i) {
+    std::vector<Vec3> points;
+    Box bounds;
+    for (int k = 0; k < 12; ++k) {
+      points.emplace_back(rng.uniform(-3.0, 3.0), rng.uniform(-1.0, 2.0), rng.uniform(-4.0, 1.0));
+      bounds.extend(points.back());
+    }
+    const ViewCell cell = i % 2 == 0 ? shaft_towards_z(rng.uniform(0.01, 0.3), rng.uniform(8.0, 60.0))
+                                     : ViewCell(Box{Vec3(-5, -1, rng.uniform(5.0, 40.0)), Vec3(-2, 1, 60.0)});
+    const ImpostorPlan plan = plan_impostor(bounds, points, cell, Camera{}, quality);
+    const ImpostorSketch sketch = sketch_impostor(bounds, points, cell, Camera{}, quality);
+    ASSERT_TRUE(plan.possible);
+    EXPECT_EQ(sketch.width_texels, plan.frame.width);
+    EXPECT_EQ(sketch.height_texels, plan.frame.height);
+    EXPECT_EQ(sketch.frame.slope_step, plan.frame.slope_step);
+    EXPECT_NEAR(sketch.layers, static_cast<double>(plan.layers.size()), 2.0 + 0.03 * sketch.layers);
+    EXPECT_NEAR(sketch.near_m, plan.layers.front().near_m, 1e-9);
+    EXPECT_NEAR(sketch.far_m, plan.layers.back().far_m, 1e-9);
+  }
+}
+
 TEST(Bake, AWallIsOneFullQuad) {
   const Impostor impostor = bake_layered(wall_scene(), {{0}, shaft_towards_z(0.2, 10.0)}, Camera{}, {});
   ASSERT_EQ(impostor.layers.size(), 1U);
