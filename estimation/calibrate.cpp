@@ -148,6 +148,10 @@ FitSummary fit_time_model(const std::vector<TimedFrame>& all_frames, double cove
   summary.left_out.insert(summary.left_out.end(), choice.left_out.begin(), choice.left_out.end());
   name_zero_terms(fitted, summary.left_out);
   summary.warnings = fit_warnings(steady, fitted);
+  if (held_out.size() < least_frames_for(coverage))
+    summary.warnings.push_back("the bound rests on " + std::to_string(held_out.size()) + " frames, too few for its coverage (" +
+                               std::to_string(least_frames_for(coverage)) +
+                               " are enough): it is the greatest ratio times 1.25; let it time more (--seconds)");
   return summary;
 }
 

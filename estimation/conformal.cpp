@@ -43,6 +43,12 @@ std::vector<std::size_t> step_borders(const std::vector<HeldOut>& sorted, double
 
 }  // namespace
 
+std::size_t least_frames_for(double coverage) {
+  auto frames = static_cast<std::size_t>(coverage / (1.0 - coverage));
+  while (conformal_rank(frames, coverage) > frames) ++frames;
+  return frames;
+}
+
 std::vector<BoundStep> conformal_steps(std::vector<HeldOut> held_out, double coverage) {
   std::sort(held_out.begin(), held_out.end(), [](const HeldOut& a, const HeldOut& b) {
     return a.predicted_ms != b.predicted_ms ? a.predicted_ms < b.predicted_ms : a.measured_ms < b.measured_ms;

@@ -14,6 +14,9 @@ struct HeldOut {
   double measured_ms = 0.0;  // > 0
 };
 
+/// So many frames are enough for a quantile of this coverage (99 for 99 %).
+[[nodiscard]] std::size_t least_frames_for(double coverage);
+
 /// Steps over predicted time, as many (at most 5) as leave each enough frames for `coverage`; with too few frames even for one step, the
 /// greatest ratio times kTooFewFactor. `held_out` holds at least one frame.
 inline constexpr double kTooFewFactor = 1.25;

@@ -36,6 +36,12 @@ TEST(ConformalSteps, OfTooFewFramesStandAboveTheGreatestRatio) {
   EXPECT_DOUBLE_EQ(steps[0].factor, kTooFewFactor * 2.0);
 }
 
+TEST(ConformalSteps, SayHowManyFramesAreEnough) {
+  EXPECT_EQ(least_frames_for(0.99), 99U);
+  EXPECT_EQ(least_frames_for(0.9), 9U);
+  EXPECT_EQ(least_frames_for(0.5), 1U);
+}
+
 TEST(ConformalSteps, AscendAndEndInInfinity) {
   for (std::uint64_t seed = 0; seed < 50; ++seed) {
     const auto steps = conformal_steps(noisy_frames(seed, 600), 0.95);

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -144,6 +145,41 @@ TEST(Fit, LearnsFromTheDesignedSceneAndIsJudgedByTheOthers) {
   EXPECT_LT(fit.model.bound_ms(10.0), 10.5);
   for (TimedFrame& frame : frames) frame.designed = true;
   EXPECT_GT(fit_time_model(frames, 0.99).model.bound_ms(10.0), 15.0) << "designed frames alone have to judge themselves";
+}
+
+TEST(Fit, FlagsABoundThatRestsOnTooFewFrames) {
+  const auto flagged = [](int frames) {
+    const FitSummary fit = fit_time_model(synthetic(14, frames), 0.99);
+    return std::any_of(fit.warnings.begin(), fit.warnings.end(),
+                       [](const std::string& warning) { return warning.find("too few for its coverage (99 are enough)") != std::string::npos; });
+  };
+  EXPECT_TRUE(flagged(98));
+  EXPECT_FALSE(flagged(99));
+}
+
+TEST(Fit, PassesOverFramesWhoseRepeatsDisagreeAndCountsThem) {
+  std::vector<TimedFrame> frames = synthetic(15, 200);
+  for (std::size_t i = 0; i < frames.size(); i += 4) {
+    frames[i].milliseconds *= 5.0;
+    frames[i].spread = 1.01 * kMostSpread;
+  }
+  const FitSummary fit = fit_time_model(frames, 0.99);
+  EXPECT_EQ(fit.unsteady_frames, 50U);
+  EXPECT_EQ(fit.frames, 150U);
+  expect_truth(fit.model, 1e-8);
+  EXPECT_EQ(evaluate(fit.model, frames).frames, 150U);
+  for (TimedFrame& frame : frames) frame.spread = 1.0;
+  EXPECT_THROW((void)fit_time_model(frames, 0.99), Failure);
+  EXPECT_THROW((void)evaluate(fit.model, frames), Failure);
+}
+
+// By hand: of 100 frames at 99 %, 3 misses or fewer come about in 98.2 % of cases, 2 or fewer in 92.1 %. Of 1,000, 15.
+TEST(Misses, ThatSpeakAgainstACoverageAreThoseOfTheBinomialTest) {
+  EXPECT_EQ(most_misses(100, 0.99), 3U);
+  EXPECT_EQ(most_misses(1000, 0.99), 15U);
+  EXPECT_EQ(most_misses(10, 0.5), 8U);
+  EXPECT_EQ(most_misses(1, 0.99), 0U);
+  EXPECT_EQ(most_misses(0, 0.99), 0U);
 }
 
 TEST(Fit, NamesTermsThatTheFramesCannotSupport) {
