@@ -99,16 +99,19 @@ void check_input(const std::vector<TimedFrame>& frames, double coverage) {
   if (!(coverage > 0.0 && coverage < 1.0))
     throw Failure(ErrorWord::kBadUsage, "coverage is " + std::to_string(coverage) + "; it must lie between 0 and 1");
   check_frames(frames);
-  const std::size_t steady = steady_frames(frames).size();
-  if (steady >= kLeastFrames) return;
-  const std::size_t unsteady = frames.size() - steady;
+  if (enough_frames(frames)) return;
+  const std::vector<TimedFrame> steady = steady_frames(frames);
+  const std::size_t judged = steady.empty() ? 0 : judged_count(judged_first(steady)), unsteady = frames.size() - steady.size();
   throw Failure(ErrorWord::kBadUsage,
-                "the time model needs at least " + std::to_string(kLeastFrames) + " timed frames, there are " + std::to_string(steady) +
-                    (unsteady > 0 ? " and " + std::to_string(unsteady) + " whose repeats disagree by more than a fifth" : ""));
+                "the time model needs at least " + std::to_string(kLeastFrames) + " timed frames, there are " + std::to_string(judged) +
+                    (steady.size() > judged ? ", and " + std::to_string(steady.size() - judged) + " of the designed scene" : "") +
+                    (unsteady > 0 ? ", and " + std::to_string(unsteady) + " whose repeats disagree by more than a fifth" : ""));
 }
 
 void fill_quality(const std::vector<HeldOut>& held_out, const std::vector<Rows>& folds, double coverage, FitSummary& summary) {
   const Evaluation quality = summarise(held_out, held_out_bounds(held_out, folds, coverage));
+  summary.held_out_frames = quality.frames;
+  summary.misses = quality.misses;
   summary.median_error = quality.median_error;
   summary.p90_error = quality.p90_error;
   summary.measured_coverage = quality.coverage;
@@ -122,6 +125,11 @@ std::vector<TimedFrame> steady_frames(const std::vector<TimedFrame>& frames) {
   for (const TimedFrame& frame : frames)
     if (frame.spread <= kMostSpread) steady.push_back(frame);
   return steady;
+}
+
+bool enough_frames(const std::vector<TimedFrame>& frames) {
+  const std::vector<TimedFrame> steady = judged_first(steady_frames(frames));
+  return !steady.empty() && judged_count(steady) >= kLeastFrames;
 }
 
 FitSummary fit_time_model(const std::vector<TimedFrame>& all_frames, double coverage) {

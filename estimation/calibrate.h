@@ -31,11 +31,13 @@ struct TimedFrame {
 inline constexpr double kMostSpread = 0.2;
 [[nodiscard]] std::vector<TimedFrame> steady_frames(const std::vector<TimedFrame>& frames);
 
-/// Fewer steady frames are not fitted.
+/// Fewer steady frames to judge by (held_out.h) are not fitted.
 inline constexpr std::size_t kLeastFrames = 20;
+[[nodiscard]] bool enough_frames(const std::vector<TimedFrame>& frames);
 
-/// What the caller's timer is to do for each sample: fewer repeats than a verification's, and no warm-up, whose place the first repeat takes
-/// (the median forgets it), since many rough samples teach a fit more than few exact ones.
+/// What the caller's timer is to do for each sample: fewer repeats than a verification's, since many rough samples teach a fit more than
+/// few exact ones. The first repeat takes the place of a warm-up; the median is then the slower of the other two, half a noise width on the
+/// safe side.
 inline constexpr int kCalibrationRepeats = 3;
 inline constexpr int kCalibrationWarmUp = 0;
 
@@ -56,10 +58,11 @@ struct TrainingScene {
   bool designed = false;
 };
 
-/// Timed frames of the scenes, taking turns (group: index of the scene): clusters, whole frames, with and without impostors. The context must be
-/// current. Which frames are timed depends on the seed alone; fewer seconds stop earlier.
-[[nodiscard]] std::vector<TimedFrame> sample_frames(std::span<const TrainingScene> scenes, Context& context, FrameTimer& timer, const Camera& camera,
-                                                    const CalibrationOptions& options, const Enough& enough, const WorkBudget& budget);
+/// Timed frames of the scenes, taking turns (group: index of the scene): clusters, whole frames, with and without impostors. The context
+/// must be current. Which frames are timed depends on the seed alone; fewer seconds stop earlier.
+[[nodiscard]] std::vector<TimedFrame> sample_frames(std::span<const TrainingScene> scenes, Context& context, FrameTimer& timer,
+                                                    const Camera& camera, const CalibrationOptions& options, const Enough& enough,
+                                                    const WorkBudget& budget);
 
 /// A term that takes part in the fit.
 struct FittedTerm {
@@ -79,6 +82,8 @@ struct FitSummary {
   double max_error = 0.0;
   std::uint32_t frames = 0;
   std::uint32_t unsteady_frames = 0;  // not fitted: kMostSpread
+  std::uint32_t held_out_frames = 0;  // of the fitted ones, those that errors and coverage are about
+  std::uint32_t misses = 0;           // of these, above the bound
   double median_error = 0.0;          // held out, relative
   double p90_error = 0.0;
   double measured_coverage = 0.0;  // held out
@@ -88,9 +93,9 @@ struct FitSummary {
 };
 
 /// Deterministic. Terms the frames cannot support are dropped and named. Stages add up unless the held-out error speaks for an overlap
-/// (held_out.h). Errors and bound are those on frames held out, the designed ones in every fit: scene by scene, or in five random folds where there is one scene only (or
-/// one that no other can stand in for). Throws Failure(kBadUsage) naming the row for a time that is not finite and positive, or when there
-/// are too few steady frames.
+/// (held_out.h). Errors and bound are those on frames held out, the designed ones in every fit: scene by scene, or in five random folds
+/// where there is one scene only (or one that no other can stand in for). Throws Failure(kBadUsage) naming the row for a time that is not
+/// finite and positive, or when there are too few steady frames.
 [[nodiscard]] FitSummary fit_time_model(const std::vector<TimedFrame>& frames, double coverage);
 
 /// Frames that the bound may miss, of so many, before they speak against the stated coverage: more misses would come about in at most one
@@ -100,6 +105,7 @@ struct FitSummary {
 /// How a model does on frames it has not seen (calibrate --evaluate).
 struct Evaluation {
   std::uint32_t frames = 0;
+  std::uint32_t unsteady_frames = 0;  // not among them: kMostSpread
   double median_error = 0.0;
   double p90_error = 0.0;
   double coverage = 0.0;

@@ -28,7 +28,7 @@ double conformal_ratio(const HeldOut* first, const HeldOut* last, double coverag
 /// Where the steps begin in the sorted frames, and their end; equal predictions stay in one step.
 std::vector<std::size_t> step_borders(const std::vector<HeldOut>& sorted, double coverage) {
   std::size_t steps = kMaxSteps;
-  while (steps > 1 && conformal_rank(sorted.size() / steps, coverage) > sorted.size() / steps) --steps;
+  while (steps > 1 && sorted.size() / steps < 3 * least_frames_for(coverage)) --steps;
   std::vector<std::size_t> borders = {0};
   for (std::size_t i = 1; i < steps; ++i) {
     const double predicted_ms = sorted[i * sorted.size() / steps].predicted_ms;

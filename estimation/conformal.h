@@ -17,8 +17,8 @@ struct HeldOut {
 /// So many frames are enough for a quantile of this coverage (99 for 99 %).
 [[nodiscard]] std::size_t least_frames_for(double coverage);
 
-/// Steps over predicted time, as many (at most 5) as leave each enough frames for `coverage`; with too few frames even for one step, the
-/// greatest ratio times kTooFewFactor. `held_out` holds at least one frame.
+/// Steps over predicted time, as many (at most 5) as leave each three times as many (with fewer, a quantile so high is hardly more than the
+/// greatest ratio); with too few frames even for one step, the greatest ratio times kTooFewFactor. `held_out` holds at least one frame.
 inline constexpr double kTooFewFactor = 1.25;
 [[nodiscard]] std::vector<BoundStep> conformal_steps(std::vector<HeldOut> held_out, double coverage);
 

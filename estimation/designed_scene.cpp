@@ -21,7 +21,7 @@ constexpr std::uint32_t kCrowdMeshes = 64;
 constexpr std::uint32_t kCrowdTextures = 200;
 
 /// Materials, by index; those of the crowd follow.
-enum Style : std::uint32_t { kPlain, kTextured, kMasked, kStyles };
+enum Style : std::uint32_t { kPlain, kTextured, kMasked, kPlainOneSided, kTexturedOneSided, kStyles };
 
 /// Noise; with `holes`, two texels of five in blocks of 8 x 8 are transparent.
 Texture noise_texture(std::uint64_t stream, int side, bool holes) {
@@ -44,7 +44,9 @@ void add_materials(Scene& scene) {
   scene.materials[kTextured].texture = 0;
   scene.materials[kMasked].texture = 1;
   scene.materials[kMasked].alpha_mode = AlphaMode::kMask;
-  scene.materials[kMasked].double_sided = true;
+  scene.materials[kPlainOneSided] = scene.materials[kPlain];
+  scene.materials[kTexturedOneSided] = scene.materials[kTextured];
+  for (const Style style : {kPlainOneSided, kTexturedOneSided}) scene.materials[style].double_sided = false;
 }
 
 /// A ball of `rings` x 2 `rings` quads, its poles along y.
@@ -110,7 +112,8 @@ void add_crowd(Scene& scene, const Vec3& corner) {
   for (int i = 0; i < kCrowd; ++i) {
     Material& material = scene.materials.emplace_back();
     if (i % 8 != 0) material.texture = first_texture + static_cast<std::int32_t>(rng.below(kCrowdTextures));
-    add_object(scene, first_mesh + static_cast<std::uint32_t>(rng.below(kCrowdMeshes)), static_cast<std::uint32_t>(scene.materials.size() - 1),
+    add_object(scene, first_mesh + static_cast<std::uint32_t>(rng.below(kCrowdMeshes)),
+               static_cast<std::uint32_t>(scene.materials.size() - 1),
                corner + Vec3(0.9 * (i % kCrowdSide), kScale * kRadius_m, 0.9 * (i / kCrowdSide)), kScale);
   }
 }
@@ -124,8 +127,9 @@ Scene make_designed_scene() {
   scene.meshes.push_back(panel());
   for (const int rings : {3, 10, 32, 120}) scene.meshes.push_back(ball(rings));
   const auto meshes = static_cast<std::uint32_t>(scene.meshes.size());
-  for (const Style style : {kPlain, kTextured, kMasked}) add_row(scene, meshes, style, kPitch_m * static_cast<double>(style));
-  add_crowd(scene, {0.0, 0.0, 3.0 * kPitch_m});
+  for (const Style style : {kPlain, kTextured, kMasked, kPlainOneSided, kTexturedOneSided})
+    add_row(scene, meshes, style, kPitch_m * static_cast<double>(style));
+  add_crowd(scene, {0.0, 0.0, static_cast<double>(kStyles) * kPitch_m});
   update_derived(scene);
   return scene;
 }

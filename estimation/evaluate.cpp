@@ -64,16 +64,18 @@ std::uint32_t most_misses(std::uint32_t frames, double coverage) {
 }
 
 Evaluation evaluate(const TimeModel& model, const std::vector<TimedFrame>& all_frames) {
+  check_frames(all_frames);
   const std::vector<TimedFrame> frames = steady_frames(all_frames);
-  if (frames.empty()) throw Failure(ErrorWord::kBadUsage, "no timed frame to evaluate the time model on");
-  check_frames(frames);
+  if (frames.empty()) throw Failure(ErrorWord::kBadUsage, "no timed frame whose repeats agree to evaluate the time model on");
   std::vector<HeldOut> held_out;
   std::vector<double> bounds_ms;
   for (const TimedFrame& frame : frames) {
     held_out.push_back({model.predicted_ms(frame.features), frame.milliseconds});
     bounds_ms.push_back(model.bound_ms(held_out.back().predicted_ms));
   }
-  return summarise(held_out, bounds_ms);
+  Evaluation result = summarise(held_out, bounds_ms);
+  result.unsteady_frames = static_cast<std::uint32_t>(all_frames.size() - frames.size());
+  return result;
 }
 
 }  // namespace standin

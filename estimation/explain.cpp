@@ -42,7 +42,8 @@ class Words {
   }
   /// "One costs as much as 1,500 of the other."
   void compare(const char* one, Term term, const char* others, Term other) {
-    if (ms(term) > 0.0 && ms(other) > 0.0) sentences.push_back(std::string(one) + " costs as much as " + rounded(ms(term) / ms(other)) + " " + others);
+    if (ms(term) > 0.0 && ms(other) > 0.0)
+      sentences.push_back(std::string(one) + " costs as much as " + rounded(ms(term) / ms(other)) + " " + others);
   }
 
   std::vector<std::string> sentences;

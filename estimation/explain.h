@@ -8,8 +8,8 @@
 
 namespace standin {
 
-/// Sentences, most telling first. A cost that the frames leave uncertain by more than half is followed by "(+- so many %)"; what was left out
-/// is not mentioned.
+/// Sentences, from the frame down to the quad. A cost that the frames leave uncertain by more than half is followed by "(+- so many %)";
+/// what was left out is not mentioned.
 [[nodiscard]] std::vector<std::string> explain(const FitSummary& fit);
 
 }  // namespace standin

@@ -117,6 +117,10 @@ FeatureTable::FeatureTable(const Scene& scene, const Camera& camera)
   for (const Mesh& mesh : scene.meshes) samples_.push_back(sample_surface(mesh, kSamplesPerMesh));
   shapes_.reserve(scene.objects.size());
   for (const Object& object : scene.objects) shapes_.push_back(shape_of(object));
+  for (std::size_t kind = 0; kind < kPixelKindCount; ++kind)
+    if (std::any_of(scene.parts.begin(), scene.parts.end(),
+                    [&](const Part& part) { return pixel_kind(scene, part) == static_cast<PixelKind>(kind); }))
+      pixel_terms_.push_back(kPixelTerm[kind]);
 }
 
 FeatureTable::ObjectShape FeatureTable::shape_of(const Object& object) const {

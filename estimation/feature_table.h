@@ -26,14 +26,16 @@ class FeatureTable {
 
   /// Of an object alone in a view; all zero when its bounds miss the frustum. About a microsecond a part, 15 for a part within reach.
   [[nodiscard]] Features estimate(std::uint32_t object, const PreparedView& view) const;
-  /// Upper bound over all views from `eyes`, in any direction, of what an object adds to a frame. About a microsecond a part.
+  /// Upper bound over all views from `eyes`, in any direction, of what an object adds to a frame. About a microsecond a part, 15 for a part
+  /// that may be within reach.
   [[nodiscard]] Features bound(std::uint32_t object, const Box& eyes) const;
   /// A whole frame: frame_features(), and `objects` as they hide each other. At most the sum of their estimates.
   [[nodiscard]] Features frame(std::span<const std::uint32_t> objects, const View& view) const;
 
   [[nodiscard]] const Camera& camera() const { return camera_; }
-  /// What all pixel terms of a frame's originals together are at most.
+  /// What all pixel terms of a frame's originals together are at most, and which of them the scene has at all.
   [[nodiscard]] double most_passed_pixels() const { return most_passed_pixels_; }
+  [[nodiscard]] std::span<const Term> pixel_terms() const { return pixel_terms_; }
 
  private:
   struct ObjectShape {
@@ -47,7 +49,8 @@ class FeatureTable {
   const Scene* scene_;
   Camera camera_;
   double most_passed_pixels_;
-  double most_edge_pixels_;  // of a triangle: no part of the image has a longer outline than the image
+  std::vector<Term> pixel_terms_;
+  double most_edge_pixels_;              // of a triangle: no part of the image has a longer outline than the image
   std::vector<SurfaceSamples> samples_;  // per mesh
   std::vector<ObjectShape> shapes_;      // per object
 };

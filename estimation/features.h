@@ -4,8 +4,8 @@
 // (screen_coverage.h). For a single view they are estimates; for a region they are upper bounds over all its views from a box of eyes, and
 // monotone: never less for a larger box. Asked for more than once, take a FeatureTable (feature_table.h).
 //
-// What costs nothing that frames of eight scenes could show beside these is left out: generated but hidden pixels, vertices, and the texture
-// switches of originals, which are drawn sorted (tests/bench/time_model.md).
+// What costs nothing that frames of eight scenes could show beside these is left out: generated but hidden pixels, vertices, and the
+// texture switches of originals, which are drawn sorted (tests/bench/time_model.md).
 #pragma once
 
 #include <array>
@@ -34,7 +34,8 @@ enum class Term : std::size_t {
 };
 inline constexpr std::size_t kTermCount = static_cast<std::size_t>(Term::kCount);
 [[nodiscard]] std::string_view term_name(Term term);  // "draws" ...
-/// Pixels of originals: of a frame, together at most those of the image. An impostor's are not: its quads are masked, in no depth order.
+/// Pixels of originals: of a frame, together at most kOverdraw images (screen_coverage.h). An impostor's are not: its quads are masked, in
+/// no depth order.
 [[nodiscard]] bool is_pixel_term(Term term);
 
 struct Features {

@@ -35,8 +35,8 @@ struct FittedForm {
 [[nodiscard]] FitProblem problem_of(const std::vector<TimedFrame>& frames, const Rows& rows, const TermSet& terms);
 [[nodiscard]] FittedForm fit_form(const std::vector<TimedFrame>& frames, const Rows& rows, const ModelForm& form);
 
-/// The judged rows of each fold: one scene after the other, so that the error is that on an unseen scene; the frames of a scene that no other
-/// can stand in for are dealt to five folds at random. Here and below, frames are as judged_first() has them.
+/// The judged rows of each fold: one scene after the other, so that the error is that on an unseen scene; the frames of a scene that no
+/// other can stand in for are dealt to five folds at random. Here and below, frames are as judged_first() has them.
 [[nodiscard]] std::vector<Rows> folds_of(const std::vector<TimedFrame>& frames);
 /// Every judged frame predicted by a fit to all frames but those of its fold.
 [[nodiscard]] std::vector<HeldOut> held_out_predictions(const std::vector<TimedFrame>& frames, const std::vector<Rows>& folds,

@@ -1,7 +1,5 @@
 #include "estimation/learning_curve.h"
 
-#include <cmath>
-
 namespace standin {
 namespace {
 
@@ -19,7 +17,7 @@ std::vector<TimedFrame> first_seconds(const std::vector<TimedFrame>& frames, dou
 std::vector<LearningPoint> learning_curve(const std::vector<TimedFrame>& frames, double coverage) {
   std::vector<LearningPoint> curve;
   const auto add = [&](double seconds, const std::vector<TimedFrame>& first) {
-    if (steady_frames(first).size() < kLeastFrames) return;
+    if (!enough_frames(first)) return;
     const FitSummary fit = fit_time_model(first, coverage);
     curve.push_back({seconds, fit.frames, fit.median_error, fit.p90_error, fit.measured_coverage, fit.bound_over_measured_median});
   };
@@ -30,8 +28,7 @@ std::vector<LearningPoint> learning_curve(const std::vector<TimedFrame>& frames,
 }
 
 bool accurate_enough(const FitSummary& fit, double target_error) {
-  const auto misses = static_cast<std::uint32_t>(std::lround((1.0 - fit.measured_coverage) * fit.frames));
-  return fit.median_error <= target_error && misses <= most_misses(fit.frames, fit.model.coverage);
+  return fit.median_error <= target_error && fit.misses <= most_misses(fit.held_out_frames, fit.model.coverage);
 }
 
 }  // namespace standin

@@ -2,8 +2,8 @@
 //
 // A patch of vector area a at eye-space point p, depth z, covers f^2 |a.p| / z^3 pixels: the exact differential of the projection, which
 // takes in distance, orientation and the growth towards the image's corners at once. Edges of length l in all directions of its plane are
-// f l (1 + |cos|) / 2z pixels long, where cos is that of the angle between the patch's normal and the line of sight. Both hold for patches that
-// are small beside their distance; nearer ones are divided.
+// f l (1 + |cos|) / 2z pixels long, where cos is that of the angle between the patch's normal and the line of sight. Both hold for patches
+// that are small beside their distance; nearer ones are divided.
 #pragma once
 
 #include <cmath>
@@ -57,8 +57,9 @@ void for_each_small_part(const Patch& patch, Visit&& visit, int depth = 0) {
   for (int i = 0; i < kPartsPerSide; ++i)
     for (int j = 0; j < kPartsPerSide; ++j) {
       const double x = i - 0.5 * (kPartsPerSide - 1), y = j - 0.5 * (kPartsPerSide - 1);
-      for_each_small_part(Patch{patch.centre + x * u + y * v, kShare * patch.vector_area_m2, kShare * patch.edges_m, kShare * patch.triangles},
-                          visit, depth + 1);
+      for_each_small_part(
+          Patch{patch.centre + x * u + y * v, kShare * patch.vector_area_m2, kShare * patch.edges_m, kShare * patch.triangles}, visit,
+          depth + 1);
     }
 }
 
@@ -113,7 +114,7 @@ class ProjectionFromBox {
     const double from_centre = glm::dot(patch.vector_area_m2, centre_ - patch.centre);
     const double towards = (double_sided ? std::abs(from_centre) : from_centre) + glm::dot(glm::abs(patch.vector_area_m2), half_size_);
     const double to_centre_m = distance(patch.centre, eyes_);
-    if (!double_sided && !(towards > -1e-9 * area_m2 * (to_centre_m + near_m_))) return {};
+    if (!double_sided && !(towards > -1e-9 * area_m2)) return {};
     // Parts lie in the patch's plane, within half the diagonal of the square; no part is smaller than the deepest ones.
     const bool small = is_small((1.0 - 1e-9) * to_centre_m * to_centre_m, area_m2);
     const double nearest_m = std::max(small ? to_centre_m : to_centre_m - std::sqrt(0.5 * area_m2), near_m_);

@@ -105,7 +105,8 @@ void write_samples(const CalibrationSamples& samples, const std::filesystem::pat
   const Machine& machine = samples.machine;
   std::string text = std::string(kFormat) + "\n# device: " + one_line(machine.device) + "\n# renderer: " + one_line(machine.renderer) +
                      "\n# gl_version: " + one_line(machine.gl_version) + "\n# processor: " + one_line(machine.processor) +
-                     "\n# reference_ms: " + text_of(machine.reference_ms) + "\n# clock: " + one_line(machine.clock) + "\n" + header() + "\n";
+                     "\n# reference_ms: " + text_of(machine.reference_ms) + "\n# clock: " + one_line(machine.clock) + "\n" + header() +
+                     "\n";
   for (const TimedFrame& frame : samples.frames) {
     text += std::to_string(frame.group) + (frame.designed ? ",1" : ",0");
     for (const double value : {frame.milliseconds, frame.spread, frame.seconds, frame.passed_pixels}) text += "," + text_of(value);
@@ -125,7 +126,10 @@ CalibrationSamples read_samples(const std::filesystem::path& file) {
   samples.machine.gl_version = read_value(lines, "gl_version");
   samples.machine.processor = read_value(lines, "processor");
   samples.machine.reference_ms = read_number<double>(lines, read_value(lines, "reference_ms"));
+  if (!(samples.machine.reference_ms > 0.0)) lines.fail("reference_ms is 0, which violates: > 0");
   samples.machine.clock = read_value(lines, "clock");
+  if (samples.machine.clock != "thread_cpu" && samples.machine.clock != "wall")
+    lines.fail("clock \"" + samples.machine.clock + "\" violates: thread_cpu or wall");
   if (const std::string_view row = lines.next(); row != header()) lines.fail("the header violates: is \"" + header() + "\"");
   while (!lines.at_end()) samples.frames.push_back(read_frame(lines, lines.next()));
   return samples;

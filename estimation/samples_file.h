@@ -1,8 +1,8 @@
 // The timed frames of a calibration as a file (CSV), so that a fit can be repeated anywhere, byte for byte, and looked at with any tool.
 //
-// Lines "# key: value" name the machine. Then a header row and a row per frame: its scene ("group") and whether that is the designed one, its milliseconds, how far its
-// repeats spread, the seconds timed until then, the pixels that the device counted, and its features by name. Numbers are the shortest that
-// read back as they were. Frames that the fit passes over are here as well.
+// Lines "# key: value" name the machine. Then a header row and a row per frame: its scene ("group") and whether that is the designed one,
+// its milliseconds, how far its repeats spread, the seconds timed until then, the pixels that the device counted, and its features by name.
+// Numbers are the shortest that read back as they were. Frames that the fit passes over are here as well.
 #pragma once
 
 #include <filesystem>

@@ -24,10 +24,19 @@ constexpr std::size_t kImpostors = 8;
 constexpr int kImpostorAttempts = 40;
 constexpr std::uint64_t kMaxBakedTriangles = 30'000;  // baking is not what the seconds are for
 constexpr double kEyeHeight_m = 1.7;
+constexpr int kAttempts = 8;
+constexpr double kLeastTriangles = 1e5;   // however small a scene is, it does not take more turns than one of so many
 constexpr std::size_t kWarmUpFrames = 8;  // one of each kind: compiles the shaders
 
 double log_uniform(Rng& rng, double low, double high) {
   return low * std::pow(high / low, rng.uniform());
+}
+
+/// About a millisecond's work for a software renderer, or less: no placement turns on such frames.
+bool is_light(const Features& features) {
+  const double pixels = features[Term::kPlainPixels] + features[Term::kTexturedPixels] + features[Term::kMaskedPixels];
+  return features[Term::kDraws] < 200 && features[Term::kTriangles] < 5'000 && features[Term::kEdgePixels] < 30'000 && pixels < 50'000 &&
+         features[Term::kImpostorQuads] < 1'000 && features[Term::kImpostorPixels] < 50'000;
 }
 
 Vec3 random_direction(Rng& rng, double min_sine, double max_sine) {
@@ -52,6 +61,15 @@ View view_towards(Rng& rng, const Vec3& eye, const Vec3& target, const Camera& c
   return {eye, glm::normalize(axis + right * frame[0] + up * frame[1])};
 }
 
+/// Pages so small that even these few impostors fill several: what a change of pages costs must show.
+std::uint32_t smallest_page(const std::vector<Impostor>& impostors) {
+  std::uint32_t side = 256;
+  for (const Impostor& impostor : impostors)
+    for (const Quad& quad : impostor.quads)
+      side = std::max({side, quad.width + 2 * AtlasOptions{}.gutter, quad.height + 2 * AtlasOptions{}.gutter});
+  return side;
+}
+
 /// Whatever is asked of one frame: what to draw from where.
 struct Setup {
   View view;
@@ -68,9 +86,16 @@ class FrameSampler {
 
   [[nodiscard]] const ImpostorSet& impostors() const { return impostors_; }
 
+  /// Drawn again, a few times, while it is so light that it would teach little.
   [[nodiscard]] Setup setup(std::size_t frame) {
     if (frame % 40 == 0) return {street_view(), {}};
-    switch (frame % 8) {
+    Setup drawn = draw(frame % 8);
+    for (int attempt = 1; attempt < kAttempts && is_light(features(drawn)); ++attempt) drawn = draw(frame % 8);
+    return drawn;
+  }
+
+  [[nodiscard]] Setup draw(std::size_t kind) {
+    switch (kind) {
       case 0:
         return whole();
       case 3:
@@ -125,8 +150,9 @@ class FrameSampler {
   }
 
   /// Upright, at eye height above the scene's floor or anywhere in its height, in no object's bounds but large flat ones; from around the
-  /// scene where there is no such place, as in a single object.
+  /// scene where there is no such place, or where nobody would walk.
   [[nodiscard]] View street_view() {
+    if (is_exhibit(scene_)) return orbit_view();
     Box eyes = scene_.bounds;
     if (rng_.uniform() < 0.7) eyes.min.y = eyes.max.y = eyes.min.y + kEyeHeight_m;
     for (int attempt = 0; attempt < 32; ++attempt)
@@ -142,7 +168,8 @@ class FrameSampler {
   }
 
   [[nodiscard]] View orbit_view() {
-    const double distance_m = log_uniform(rng_, 0.6, 5.0) * 0.5 * scene_.bounds.diagonal();
+    const double distance_m =
+        (is_exhibit(scene_) ? log_uniform(rng_, 1.2, 10.0) : log_uniform(rng_, 0.6, 5.0)) * 0.5 * scene_.bounds.diagonal();
     return view_towards(rng_, scene_.bounds.centre() + distance_m * random_direction(rng_, 0.0, 0.9), scene_.bounds.centre(), camera_);
   }
 
@@ -165,14 +192,18 @@ class FrameSampler {
   }
 
   [[nodiscard]] Setup impostor(bool among_originals) {
-    const auto id = static_cast<std::uint32_t>(rng_.below(impostors_.impostors.size()));
+    const auto count = static_cast<std::uint32_t>(impostors_.impostors.size());
+    const auto id = static_cast<std::uint32_t>(rng_.below(count));
     const Impostor& drawn = impostors_.impostors[id];
     const Shaft& shaft = std::get<Shaft>(drawn.view_cell);
     const double along_m = shaft.min_distance_m * log_uniform(rng_, 1.001, 3.0);
     const double right = along_m * shaft.tan_half.x * rng_.uniform(-0.9, 0.9);
     const double up = along_m * shaft.tan_half.y * rng_.uniform(-0.9, 0.9);
     const Vec3 eye = shaft.apex + along_m * shaft.axis + right * shaft.right + up * shaft.up;
-    Setup setup{view_towards(rng_, eye, shaft.apex, camera_), {{}, {id}}};
+    Setup setup{view_towards(rng_, eye, shaft.apex, camera_), {}};
+    const double others = among_originals ? 0.0 : rng_.uniform();  // each of the others as well, with this chance
+    for (std::uint32_t other = 0; other < count; ++other)
+      if (other == id || rng_.uniform() < others) setup.list.impostors.push_back(other);
     if (among_originals)
       std::set_difference(all_objects_.begin(), all_objects_.end(), drawn.objects.begin(), drawn.objects.end(),
                           std::back_inserter(setup.list.objects));
@@ -202,7 +233,8 @@ class FrameSampler {
       Box& bounds = impostor_bounds_.emplace_back();
       for (const std::uint32_t id : impostor.objects) bounds.extend(scene_.objects[id].bounds);
     }
-    impostors_ = pack_atlas(std::move(baked));
+    const AtlasOptions pages{.max_side = smallest_page(baked)};
+    impostors_ = pack_atlas(std::move(baked), pages);
   }
 
   const Scene& scene_;
@@ -220,7 +252,9 @@ class FrameSampler {
 class Source {
  public:
   Source(const Scene& scene, Context& context, const Camera& camera, std::uint64_t seed, const WorkBudget& budget)
-      : sampler_(scene, camera, seed, budget), renderer_(context, scene, camera), size_(std::sqrt(1.0 + scene.triangle_count())) {
+      : sampler_(scene, camera, seed, budget),
+        renderer_(context, scene, camera),
+        size_(std::sqrt(std::max(kLeastTriangles, static_cast<double>(scene.triangle_count())))) {
     renderer_.upload(sampler_.impostors());
     for (std::size_t frame = 0; frame < kWarmUpFrames; ++frame) draw(sampler_.setup(frame));
   }
@@ -233,7 +267,7 @@ class Source {
     const Setup setup = sampler_.setup(frames_++);
     const FrameSample sample = timer.time(renderer_, setup.view, setup.list);
     TimedFrame frame{.features = sampler_.features(setup), .milliseconds = sample.milliseconds, .spread = sample.spread};
-    frame.seconds = 1e-3 * kCalibrationRepeats * (sample.raw_milliseconds + timer.reference_ms());
+    frame.seconds = 1e-3 * sample.spent_milliseconds;
     if (count_passed_pixels) frame.passed_pixels = static_cast<double>(renderer_.count_passed_pixels(setup.view, setup.list));
     return frame;
   }
@@ -260,7 +294,8 @@ std::vector<TimedFrame> sample_frames(std::span<const TrainingScene> scenes, Con
   while (spent_s < options.seconds && frames.size() < kMaxFrames * scenes.size()) {
     budget.check();
     budget.report("calibrate", spent_s / options.seconds);
-    const auto source = std::min_element(sources.begin(), sources.end(), [](const Source& a, const Source& b) { return a.share() < b.share(); });
+    const auto source =
+        std::min_element(sources.begin(), sources.end(), [](const Source& a, const Source& b) { return a.share() < b.share(); });
     frames.push_back(source->next(timer, options.count_passed_pixels));
     frames.back().group = static_cast<std::uint32_t>(source - sources.begin());
     frames.back().designed = scenes[frames.back().group].designed;

@@ -87,7 +87,8 @@ std::vector<SurfaceSample> draw_samples(const Mesh& mesh, const Totals& totals, 
     passed += importance;
     while (samples.size() < count && (static_cast<double>(samples.size()) + 0.5) * step <= passed) {
       const Vec2 place = spread(static_cast<std::uint32_t>(samples.size()));
-      samples.push_back({triangle.at(place.x, place.y), stands_for * triangle.vector_area_m2(), stands_for * triangle.edges_m(), stands_for});
+      samples.push_back(
+          {triangle.at(place.x, place.y), stands_for * triangle.vector_area_m2(), stands_for * triangle.edges_m(), stands_for});
     }
   }
   scale_to(totals, samples);

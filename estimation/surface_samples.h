@@ -26,8 +26,8 @@ struct SurfaceSamples {
 };
 
 inline constexpr std::uint32_t kNearFactor = 16;
-/// `count` >= 1 samples and kNearFactor times as many near ones, each set adding up to the mesh's area, edges and triangles; none for a mesh
-/// without triangles.
+/// `count` >= 1 samples and kNearFactor times as many near ones, each set adding up to the mesh's area, edges and triangles; none for a
+/// mesh without triangles.
 [[nodiscard]] SurfaceSamples sample_surface(const Mesh& mesh, std::uint32_t count);
 
 }  // namespace standin

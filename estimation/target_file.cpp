@@ -28,7 +28,6 @@ class Reader {
     if (found == json_.end()) fail("has no \"" + key + "\"");
     return *found;
   }
-  [[nodiscard]] bool has(const std::string& key) const { return json_.contains(key); }
   [[nodiscard]] Reader object(const std::string& key) const { return {member(key), place_ + "/" + key}; }
   [[nodiscard]] std::string text(const std::string& key) const {
     if (!member(key).is_string()) fail("\"" + key + "\" is not a string");
@@ -68,9 +67,7 @@ Json null_if_infinite(double number) {
   return std::isinf(number) ? Json(nullptr) : Json(number);
 }
 
-/// Files from before stages could overlap say nothing.
 Combination read_combination(const Reader& model) {
-  if (!model.has("combination")) return Combination::kSum;
   const std::string word = model.text("combination");
   if (word != "sum" && word != "max") model.fail("\"combination\" is \"" + word + "\", not \"sum\" or \"max\"");
   return word == "sum" ? Combination::kSum : Combination::kMax;
@@ -169,6 +166,7 @@ Target read_target(const std::filesystem::path& file) {
   target.machine.gl_version = machine.text("gl_version");
   target.machine.processor = machine.text("processor");
   target.machine.reference_ms = machine.number("reference_ms");
+  if (!(target.machine.reference_ms > 0.0)) machine.fail("\"reference_ms\" is 0, which violates: > 0");
   target.machine.clock = machine.text("clock");
   if (target.machine.clock != "thread_cpu" && target.machine.clock != "wall")
     machine.fail("\"clock\" is \"" + target.machine.clock + "\", not thread_cpu or wall");

@@ -28,10 +28,9 @@ double TimeModel::predicted_ms(const Cost& frame) const {
   return frame.fixed_ms + frame.pixel_ms;
 }
 
-double TimeModel::most_pixel_ms(double passed_pixels) const {
+double TimeModel::most_pixel_ms(std::span<const Term> terms, double passed_pixels) const {
   double costliest = 0.0;
-  for (std::size_t i = 0; i < kTermCount; ++i)
-    if (is_pixel_term(static_cast<Term>(i))) costliest = std::max(costliest, milliseconds_per_unit[i]);
+  for (const Term term : terms) costliest = std::max(costliest, milliseconds_per_unit[static_cast<std::size_t>(term)]);
   return passed_pixels * costliest;
 }
 

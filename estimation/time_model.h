@@ -11,6 +11,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -47,8 +48,8 @@ struct TimeModel {
   [[nodiscard]] double predicted_ms(const Features& frame) const;
   /// The stages added up: an upper bound where they overlap.
   [[nodiscard]] double predicted_ms(const Cost& frame) const;
-  /// The most that the pixels of a frame's originals may cost, of which at most `passed_pixels` pass.
-  [[nodiscard]] double most_pixel_ms(double passed_pixels) const;
+  /// The most that the pixels of a frame's originals may cost, where at most `passed_pixels` of these terms pass.
+  [[nodiscard]] double most_pixel_ms(std::span<const Term> terms, double passed_pixels) const;
   /// Non-decreasing; 0 at 0.
   [[nodiscard]] double bound_ms(double predicted_ms) const;
   /// Largest predicted time whose bound is within the budget; < 0 if none.
@@ -60,8 +61,8 @@ struct Machine {
   std::string device;    // "osmesa" | "egl"
   std::string renderer;  // GL_RENDERER
   std::string gl_version;
-  std::string processor;      // model name; another one is a warning only
-  double reference_ms = 0.0;  // reference frame at calibration
+  std::string processor;             // model name; another one is a warning only
+  double reference_ms = 0.0;         // reference frame at calibration
   std::string clock = "thread_cpu";  // or "wall", of a device that does not work in the calling thread
 };
 

@@ -65,7 +65,7 @@ CellCosts RegionEstimator::cell_costs(std::vector<Box> chain, std::span<const st
 RegionSums RegionEstimator::empty_frame() const {
   RegionSums sums;
   sums.add(model_->cost(frame_features()));
-  sums.capped_ms += model_->most_pixel_ms(features_.most_passed_pixels());
+  sums.capped_ms += model_->most_pixel_ms(features_.pixel_terms(), features_.most_passed_pixels());
   return sums;
 }
 

@@ -5,8 +5,8 @@
 // face. Its cost bound is that of the cell's own box (the least over the chain: a smaller box never has a larger one). Child
 // regions are therefore never bounded above their parents, object by object.
 //
-// Pixel work saturates (screen_coverage.h), so a region has two linear bounds: all terms with their pixels, or terms without and as many of the
-// costliest pixels as can pass. The smaller is chosen.
+// Pixel work saturates (screen_coverage.h), so a region has two linear bounds: all terms with their pixels, or terms without and as many of
+// the costliest pixels as can pass. The smaller is chosen.
 #pragma once
 
 #include <cstdint>

@@ -31,7 +31,7 @@ struct SurveyedView {
 /// A slow view and its dearest objects (predicted with their pixels, before the cap), largest first.
 struct SlowView {
   SurveyedView surveyed;
-  std::vector<RegionTerm> causes;  // at most 8
+  std::vector<RegionTerm> causes;  // at most 8, each as if nothing hid it
 };
 
 /// The worst leaf region of a cell: its bound against the worst of the views sampled in it.

@@ -142,9 +142,8 @@ ViewSpaceKind default_view_space(const Scene& scene, std::string& why) {
     return ViewSpaceKind::kOrbit;
   }
   const Vec3 size = scene.bounds.size();
-  const double least = std::min({size.x, size.y, size.z}), greatest = std::max({size.x, size.y, size.z});
   const std::string extents = number_text(size.x) + " x " + number_text(size.y) + " x " + number_text(size.z) + " m";
-  if (greatest <= 3.0 * least) {
+  if (is_exhibit(scene)) {
     why = "orbit: the scene's extents, " + extents + ", are within a factor of 3 of each other";
     return ViewSpaceKind::kOrbit;
   }

@@ -1,5 +1,5 @@
 // In which order a frame's draws go out: near before far, so that hidden pixels fail the depth test, but only by octaves of distance;
-// within an octave by program, texture and culling, since each real switch costs as much as 1,500 textured pixels.
+// within an octave by program, texture and culling, since an unsorted frame has a switch a draw (25 to 35 us each, where a draw costs 2).
 #pragma once
 
 #include <algorithm>

@@ -68,7 +68,7 @@ class FakeFrameTimer final : public FrameTimer {
 
   [[nodiscard]] FrameSample time(Renderer& renderer, const View& view, const DrawList& list) override {
     const double ms = milliseconds_(renderer.draw(view, list));
-    return {.milliseconds = ms, .raw_milliseconds = ms, .spread = 0.0, .rejected = 0};
+    return {.milliseconds = ms, .raw_milliseconds = ms, .spread = 0.0, .rejected = 0, .spent_milliseconds = ms};
   }
   [[nodiscard]] double reference_ms() const override { return 1.0; }
   [[nodiscard]] Clock clock() const override { return Clock::kThreadCpu; }

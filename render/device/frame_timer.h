@@ -23,10 +23,11 @@
 namespace standin {
 
 struct FrameSample {
-  double milliseconds = 0.0;      // median of the repeats, each normalised by its reference frame
-  double raw_milliseconds = 0.0;  // minimum of the repeats, as measured
-  double spread = 0.0;            // interquartile range of the normalised repeats over their median
-  int rejected = 0;               // contaminated repeats
+  double milliseconds = 0.0;        // median of the repeats, each normalised by its reference frame
+  double raw_milliseconds = 0.0;    // minimum of the repeats, as measured
+  double spread = 0.0;              // interquartile range of the normalised repeats over their median
+  int rejected = 0;                 // contaminated repeats
+  double spent_milliseconds = 0.0;  // by all repeats and their reference frames
 };
 
 enum class Clock { kThreadCpu, kWall };

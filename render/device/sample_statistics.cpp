@@ -18,7 +18,7 @@ double quantile(const std::vector<double>& ascending, double fraction) {
 }  // namespace
 
 Clock fitting_clock(std::span<const Duration> durations) {
-  return std::all_of(durations.begin(), durations.end(), [](const Duration& duration) { return duration.contaminated(); })
+  return std::all_of(durations.begin(), durations.end(), [](const Duration& duration) { return duration.wall_ms > 2.0 * duration.cpu_ms; })
              ? Clock::kWall
              : Clock::kThreadCpu;
 }
@@ -39,7 +39,9 @@ FrameSample summarise(std::span<const Repeat> repeats, double reference_ms) {
   const bool any_clean = contaminated < static_cast<std::ptrdiff_t>(repeats.size());
   std::vector<double> ratios;
   std::vector<double> raw_ms;
+  double spent_ms = 0.0;
   for (const auto& repeat : repeats) {
+    spent_ms += repeat.frame.cpu_ms + repeat.reference.cpu_ms;
     if (any_clean && repeat.contaminated()) continue;
     ratios.push_back(repeat.frame.cpu_ms / repeat.reference.cpu_ms);
     raw_ms.push_back(repeat.frame.cpu_ms);
@@ -49,7 +51,8 @@ FrameSample summarise(std::span<const Repeat> repeats, double reference_ms) {
   return {.milliseconds = reference_ms * median,
           .raw_milliseconds = *std::min_element(raw_ms.begin(), raw_ms.end()),
           .spread = median > 0.0 ? (quantile(ratios, 0.75) - quantile(ratios, 0.25)) / median : 0.0,
-          .rejected = static_cast<int>(contaminated)};
+          .rejected = static_cast<int>(contaminated),
+          .spent_milliseconds = spent_ms};
 }
 
 }  // namespace standin

@@ -27,8 +27,8 @@ struct Repeat {
   return clock == Clock::kThreadCpu ? duration : Duration{duration.wall_ms, duration.wall_ms};
 }
 
-/// Thread CPU time where the thread did the work of at least one of these draws (nearly all its wall time, if nobody else ran), wall time
-/// otherwise. `durations` must not be empty.
+/// Thread CPU time where the thread worked for at least half the wall time of one of these draws, wall time otherwise. `durations` must not
+/// be empty.
 [[nodiscard]] Clock fitting_clock(std::span<const Duration> durations);
 [[nodiscard]] double least_ms(std::span<const Duration> durations, Clock clock);
 

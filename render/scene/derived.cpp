@@ -57,6 +57,11 @@ void update(Object& object, const Scene& scene) {
 
 }  // namespace
 
+bool is_exhibit(const Scene& scene) {
+  const Vec3 size = scene.bounds.size();
+  return scene.objects.size() == 1 || std::max({size.x, size.y, size.z}) <= 3.0 * std::min({size.x, size.y, size.z});
+}
+
 void update_derived(Scene& scene) {
   for (Mesh& mesh : scene.meshes) update(mesh);
   scene.bounds = Box();

@@ -90,6 +90,10 @@ struct Scene {
   }
 };
 
+/// Whether people look at the scene from outside, as at an exhibit: a single object, or extents within a factor of 3 of each other. They
+/// walk about in others.
+[[nodiscard]] bool is_exhibit(const Scene& scene);
+
 /// Recomputes meshes' bounds and areas and objects' bounds, triangle counts and areas, and the scene's bounds.
 void update_derived(Scene& scene);
 

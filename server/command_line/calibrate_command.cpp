@@ -24,9 +24,12 @@ std::vector<TrainingScene> real_scenes(const CommandContext& context) {
   return scenes;
 }
 
-// As CAD programs deliver theirs.
+// As CAD programs deliver theirs: no textures, and back sides that nobody draws.
 Scene without_textures(Scene scene) {
-  for (Material& material : scene.materials) material.texture = -1;
+  for (Material& material : scene.materials) {
+    material.texture = -1;
+    material.double_sided = false;
+  }
   scene.textures.clear();
   return scene;
 }
@@ -62,13 +65,12 @@ CalibrationSamples time_samples(const std::vector<TrainingScene>& scenes, const 
   const auto timer = make_frame_timer(*device, protocol);
   const double target_error = context.arguments.target_error;
   const auto enough = [&](const std::vector<TimedFrame>& frames) {
-    return target_error > 0.0 && steady_frames(frames).size() >= kLeastFrames &&
-           accurate_enough(fit_time_model(frames, context.arguments.coverage), target_error);
+    return target_error > 0.0 && enough_frames(frames) && accurate_enough(fit_time_model(frames, context.arguments.coverage), target_error);
   };
   CalibrationSamples samples;
   samples.frames = sample_frames(scenes, *device, *timer, camera_of(spec), options_of(context), enough, context.budget);
-  samples.machine = {spec.device,           device->renderer(), device->version(), processor_name(), timer->reference_ms(),
-                     std::string(clock_name(timer->clock()))};
+  samples.machine = {spec.device,      device->renderer(),    device->version(),
+                     processor_name(), timer->reference_ms(), std::string(clock_name(timer->clock()))};
   return samples;
 }
 
@@ -102,6 +104,10 @@ int calibrate_command(const CommandContext& context) {
   if (arguments.self_test) return print_self_test(arguments.json) == 0 ? 0 : 1;
   if (arguments.evaluate.empty() && arguments.output.empty())
     throw Failure(ErrorWord::kBadUsage, "calibrate needs -o FILE, --evaluate FILE or --self-test");
+  if (!arguments.evaluate.empty() && (!arguments.output.empty() || arguments.explain))
+    throw Failure(ErrorWord::kBadUsage, "calibrate --evaluate fits nothing: it takes no -o and no --explain");
+  if (!arguments.refit.empty() && !arguments.scenes.empty())
+    throw Failure(ErrorWord::kBadUsage, "calibrate --refit times nothing: it takes no SCENE");
   CalibrationSamples samples;
   if (!arguments.refit.empty()) {
     samples = read_samples(arguments.refit);

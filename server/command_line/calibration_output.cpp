@@ -55,6 +55,8 @@ json fit_json(const FitSummary& fit, const std::vector<LearningPoint>& curve) {
   return {{"stopped", fit.stopped},
           {"frames", fit.frames},
           {"unsteady_frames", fit.unsteady_frames},
+          {"held_out_frames", fit.held_out_frames},
+          {"misses", fit.misses},
           {"median_error", fit.median_error},
           {"p90_error", fit.p90_error},
           {"coverage", fit.measured_coverage},
@@ -72,14 +74,21 @@ json fit_json(const FitSummary& fit, const std::vector<LearningPoint>& curve) {
           {"explanation", explain(fit)}};
 }
 
+void print_unsteady(std::uint32_t frames) {
+  if (frames > 0) std::printf("%u more were passed over: their repeats disagree\n", frames);
+}
+
 void print_fit_text(const FitSummary& fit, const std::vector<LearningPoint>& curve) {
   std::printf(
-      "%u frames; held out: median error %.1f %%, p90 %.1f %%, the bound covers %.2f %% and is %.2fx the measured time at the median\n",
-      fit.frames, 100 * fit.median_error, 100 * fit.p90_error, 100 * fit.measured_coverage, fit.bound_over_measured_median);
-  if (fit.unsteady_frames > 0) std::printf("%u more were passed over: their repeats disagree\n", fit.unsteady_frames);
+      "%u frames, of which %u held out: median error %.1f %%, p90 %.1f %%, the bound covers %.2f %% and is %.2fx the measured time at the "
+      "median\n",
+      fit.frames, fit.held_out_frames, 100 * fit.median_error, 100 * fit.p90_error, 100 * fit.measured_coverage,
+      fit.bound_over_measured_median);
+  print_unsteady(fit.unsteady_frames);
   for (const LearningPoint& point : curve)
-    std::printf("  after %5.1f s: %4u frames, median error %4.1f %%, p90 %4.1f %%, covered %5.1f %%, bound over measured %.2f\n", point.seconds,
-                point.frames, 100 * point.median_error, 100 * point.p90_error, 100 * point.coverage, point.bound_over_measured_median);
+    std::printf("  after %5.1f s: %4u frames, median error %4.1f %%, p90 %4.1f %%, covered %5.1f %%, bound over measured %.2f\n",
+                point.seconds, point.frames, 100 * point.median_error, 100 * point.p90_error, 100 * point.coverage,
+                point.bound_over_measured_median);
   if (fit.model.combination == Combination::kMax)
     std::printf("geometry and fill overlap: the error is %.1f %% where they add up, %.1f %% where the longer one counts\n",
                 100 * fit.sum_error, 100 * fit.max_error);
@@ -103,6 +112,7 @@ void print_evaluation(const Evaluation& evaluation, double coverage, bool as_jso
   const std::uint32_t allowed = most_misses(evaluation.frames, coverage);
   if (as_json) {
     const json object = {{"frames", evaluation.frames},
+                         {"unsteady_frames", evaluation.unsteady_frames},
                          {"median_error", evaluation.median_error},
                          {"p90_error", evaluation.p90_error},
                          {"coverage", evaluation.coverage},
@@ -112,10 +122,12 @@ void print_evaluation(const Evaluation& evaluation, double coverage, bool as_jso
     std::cout << object.dump(2) << "\n";
     return;
   }
-  std::printf("%u frames: median error %.1f %%, p90 %.1f %%; %u above the bound (%u would speak against its %.3g %%), which is %.2fx the measured "
-              "time at the median\n",
-              evaluation.frames, 100 * evaluation.median_error, 100 * evaluation.p90_error, evaluation.misses, allowed + 1, 100 * coverage,
-              evaluation.bound_over_measured_median);
+  std::printf(
+      "%u frames: median error %.1f %%, p90 %.1f %%; %u above the bound (%u would speak against its %.3g %%), which is %.2fx the measured "
+      "time at the median\n",
+      evaluation.frames, 100 * evaluation.median_error, 100 * evaluation.p90_error, evaluation.misses, allowed + 1, 100 * coverage,
+      evaluation.bound_over_measured_median);
+  print_unsteady(evaluation.unsteady_frames);
 }
 
 // A table for people (Markdown), or JSON.

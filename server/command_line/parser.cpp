@@ -111,7 +111,9 @@ void add_input_commands(Grammar& grammar) {
   calibrate.app.add_option("--coverage", calibrate.arguments().coverage, "share of frames that the bound is to cover")
       ->check(CLI::Range(0.5, 0.999))
       ->capture_default_str();
-  calibrate.app.add_option("--evaluate", calibrate.arguments().evaluate, "target file to check on the scenes");
+  calibrate.app.add_option("--evaluate", calibrate.arguments().evaluate, "target file to check on the scenes")
+      ->excludes("--target-error")
+      ->excludes("--coverage");
   calibrate.app.add_option("--samples", calibrate.arguments().samples, "write the timed frames to this file (CSV) as well");
   calibrate.app.add_option("--refit", calibrate.arguments().refit, "fit the frames of this file instead of timing any")
       ->excludes("--evaluate")

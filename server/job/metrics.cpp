@@ -98,7 +98,7 @@ json causes_json(const World& world, const Subdivision& subdivision, const TimeM
       shares.add(table.bound(term.object, box), model, cpv.pixels_capped);
       by_object[term.object] += term.predicted_ms;
     }
-    if (cpv.pixels_capped) shares.pixels_ms += model.most_pixel_ms(table.most_passed_pixels());
+    if (cpv.pixels_capped) shares.pixels_ms += model.most_pixel_ms(table.pixel_terms(), table.most_passed_pixels());
   }
   std::vector<RegionTerm> objects;
   for (const auto& [object, ms] : by_object) objects.push_back({object, ms});

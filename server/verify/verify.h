@@ -80,7 +80,7 @@ struct VerifyInput {
   const std::string& impostor_glb;
   double budget_ms;
   double alpha_rad;
-  double surveyed_worst_ms = 0.0;    // survey.worst_frame_ms; 0: not known
+  double surveyed_worst_ms = 0.0;         // survey.worst_frame_ms; 0: not known
   std::vector<View> surveyed_views = {};  // the slowest that the survey found
 };
 

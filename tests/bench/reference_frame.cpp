@@ -1,5 +1,5 @@
-// What normalising by an interleaved reference frame is worth: one fixed frame, timed again and again while the other processor is kept busy,
-// with and without. Results: time_model.md.
+// What normalising by an interleaved reference frame is worth: one fixed frame, timed again and again while the other processor is kept
+// busy, with and without. Results: time_model.md.
 //
 //   reference_frame [SECONDS]
 #include <algorithm>
@@ -29,7 +29,8 @@ void print(const char* name, std::vector<double> times_ms) {
   std::sort(times_ms.begin(), times_ms.end());
   const double n = static_cast<double>(times_ms.size());
   const double mean = std::accumulate(times_ms.begin(), times_ms.end(), 0.0) / n;
-  const double variance = std::accumulate(times_ms.begin(), times_ms.end(), 0.0, [&](double sum, double t) { return sum + (t - mean) * (t - mean); }) / n;
+  const double variance =
+      std::accumulate(times_ms.begin(), times_ms.end(), 0.0, [&](double sum, double t) { return sum + (t - mean) * (t - mean); }) / n;
   const auto at = [&](double share) { return times_ms[static_cast<std::size_t>(share * (n - 1.0))]; };
   std::printf("| %s | %zu | %.2f ms | %.1f %% | %.1f %% | %.2f |\n", name, times_ms.size(), at(0.5), 100.0 * std::sqrt(variance) / mean,
               100.0 * (at(0.9) - at(0.1)) / at(0.5), times_ms.back() / times_ms.front());
@@ -60,7 +61,8 @@ int main(int argc, char** argv) {
   }
   stop = true;
   neighbour.join();
-  std::printf("| a fixed frame, %.0f s | timed | median | coefficient of variation | p10 to p90 | max / min |\n|---|---|---|---|---|---|\n", seconds);
+  std::printf("| a fixed frame, %.0f s | timed | median | coefficient of variation | p10 to p90 | max / min |\n|---|---|---|---|---|---|\n",
+              seconds);
   print("least of 3 repeats, as measured", least_ms);
   print("normalised by the reference frame", normalised_ms);
 }

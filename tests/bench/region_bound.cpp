@@ -1,7 +1,9 @@
-// How loose the bound on a region (3D cell x direction interval) is: over the worst of many views sampled inside it, with and without visible
-// sets. Results: region_bound.md.
+// How loose the bound on a region (3D cell x direction interval) is: over the worst of many views sampled inside it, with and without
+// visible sets. Results: region_bound.md.
 //
 //   region_bound SCENE TARGET [REGIONS [VIEWS [TEXTURE_FOLDER]]]
+#include "placement/view_space/region_bound.h"
+
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -9,7 +11,6 @@
 
 #include "estimation/feature_table.h"
 #include "placement/view_space/cell_boxes.h"
-#include "placement/view_space/region_bound.h"
 #include "render/base/parallel.h"
 #include "server/job/world.h"
 
@@ -33,7 +34,10 @@ struct Looseness {
 class Bench {
  public:
   Bench(const World& world, const TimeModel& model, std::uint32_t views)
-      : world_(world), model_(model), views_(views), cells_(world.view_space),
+      : world_(world),
+        model_(model),
+        views_(views),
+        cells_(world.view_space),
         estimator_(world.scene, world.hierarchy.rank, model, world.camera, world.view_space_options.interval_deg) {
     everything_.resize(world.scene.objects.size());
     std::iota(everything_.begin(), everything_.end(), 0U);

@@ -1,5 +1,5 @@
-// How good the time model is on scenes it has not seen, from saved samples (`calibrate --samples`, `calibrate --evaluate --samples`), beside
-// two floors: the same frames timed twice, and a model that is told the pixels which the device counted. Results: time_model.md.
+// How good the time model is on scenes it has not seen, from saved samples (`calibrate --samples`, `calibrate --evaluate --samples`),
+// beside two floors: the same frames timed twice, and a model that is told the pixels which the device counted. Results: time_model.md.
 //
 //   time_model TRAIN.csv NAME=TEST.csv ... [again NAME=SAME.csv ...]
 #include <algorithm>
@@ -50,8 +50,8 @@ Frames with_counted_pixels(const Frames& frames) {
 void print(const std::string& name, const TimeModel& model, const Frames& frames) {
   if (frames.empty()) return;
   const Evaluation e = evaluate(model, frames);
-  std::printf("| %s | %u | %.1f %% | %.1f %% | %u (%u) | %.2f |\n", name.c_str(), e.frames, 100 * e.median_error, 100 * e.p90_error, e.misses,
-              most_misses(e.frames, model.coverage), e.bound_over_measured_median);
+  std::printf("| %s | %u | %.1f %% | %.1f %% | %u (%u) | %.2f |\n", name.c_str(), e.frames, 100 * e.median_error, 100 * e.p90_error,
+              e.misses, most_misses(e.frames, model.coverage), e.bound_over_measured_median);
 }
 
 /// Errors of the second timing against the first, frame by frame.
@@ -90,8 +90,8 @@ int main(int argc, char** argv) {
   }
   std::printf("| frames >= 1 ms | n | median error | p90 | misses (allowed) | bound / measured |\n|---|---|---|---|---|---|\n");
   const FitSummary fit = fit_time_model(train, kCoverage);
-  std::printf("| trained on, held out | %u | %.1f %% | %.1f %% | %.1f %% | %.2f |\n", fit.frames, 100 * fit.median_error, 100 * fit.p90_error,
-              100 * (1.0 - fit.measured_coverage), fit.bound_over_measured_median);
+  std::printf("| trained on, held out | %u | %.1f %% | %.1f %% | %.1f %% | %.2f |\n", fit.frames, 100 * fit.median_error,
+              100 * fit.p90_error, 100 * (1.0 - fit.measured_coverage), fit.bound_over_measured_median);
   for (const auto& [name, frames] : tests) print(name, fit.model, long_frames(frames));
   print("all of these", fit.model, long_frames(all));
   const TimeModel told = fit_time_model(with_counted_pixels(train), kCoverage).model;

@@ -39,7 +39,7 @@ TEST(Explain, OwnsUpToWhatIsUncertain) {
   FitSummary fit = fit_with({{Term::kTextureSwitches, 0.01}, {Term::kDraws, 0.002}});
   fit.terms[0].relative_standard_error = 0.8;
   EXPECT_THAT(explain(fit), Contains("a change of an impostor atlas's texture costs 10 us (+- 80 %)"));
-  EXPECT_THAT(explain(fit), Contains("a draw call costs 2 us"));
+  EXPECT_THAT(explain(fit), Contains("a draw call costs 2.0 us"));
 }
 
 TEST(Explain, SaysWhetherStagesOverlap) {

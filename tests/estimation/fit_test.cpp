@@ -150,8 +150,9 @@ TEST(Fit, LearnsFromTheDesignedSceneAndIsJudgedByTheOthers) {
 TEST(Fit, FlagsABoundThatRestsOnTooFewFrames) {
   const auto flagged = [](int frames) {
     const FitSummary fit = fit_time_model(synthetic(14, frames), 0.99);
-    return std::any_of(fit.warnings.begin(), fit.warnings.end(),
-                       [](const std::string& warning) { return warning.find("too few for its coverage (99 are enough)") != std::string::npos; });
+    return std::any_of(fit.warnings.begin(), fit.warnings.end(), [](const std::string& warning) {
+      return warning.find("too few for its coverage (99 are enough)") != std::string::npos;
+    });
   };
   EXPECT_TRUE(flagged(98));
   EXPECT_FALSE(flagged(99));

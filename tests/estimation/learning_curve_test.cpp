@@ -50,13 +50,14 @@ TEST(LearningCurve, HasNoPointWhereThereAreTooFewFrames) {
 
 TEST(AccurateEnough, AsksForErrorAndCoverage) {
   FitSummary fit;
-  fit.frames = 1000;
+  fit.frames = 1500;  // a third of them of the designed scene
+  fit.held_out_frames = 1000;
+  fit.misses = 15;
   fit.median_error = 0.1;
-  fit.measured_coverage = 0.985;  // 15 misses
   fit.model.coverage = 0.99;
   EXPECT_TRUE(accurate_enough(fit, 0.1));
   EXPECT_FALSE(accurate_enough(fit, 0.099));
-  fit.measured_coverage = 0.984;
+  fit.misses = 16;
   EXPECT_FALSE(accurate_enough(fit, 0.1));
 }
 

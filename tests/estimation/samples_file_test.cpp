@@ -101,6 +101,8 @@ TEST_F(SamplesFile, WhatIsWrongIsNamedWithItsLine) {
   };
   EXPECT_THAT(spoilt("samples 2", "samples 1"), HasSubstr("line 1"));
   EXPECT_THAT(spoilt("# renderer", "# vendor"), HasSubstr("line 3"));
+  EXPECT_THAT(spoilt("clock: wall", "clock: cpu"), HasSubstr("line 7: clock \"cpu\" violates"));
+  EXPECT_THAT(spoilt("reference_ms: 0.6666666666666666", "reference_ms: 0"), HasSubstr("line 6: reference_ms is 0"));
   EXPECT_THAT(spoilt("group,designed", "scene,designed"), HasSubstr("line 8"));
   EXPECT_THAT(spoilt("\n1,", "\n1,2,"), HasSubstr("line 10: 18 columns"));
   EXPECT_THAT(spoilt("\n1,", "\n1,nan"), HasSubstr("line 10"));

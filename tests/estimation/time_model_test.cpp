@@ -37,7 +37,9 @@ TEST(TimeModel, CapsThePixelsOfOriginalsByTheCostliestKind) {
   model.milliseconds_per_unit[static_cast<std::size_t>(Term::kPlainPixels)] = 0.1;
   model.milliseconds_per_unit[static_cast<std::size_t>(Term::kTexturedPixels)] = 0.2;
   model.milliseconds_per_unit[static_cast<std::size_t>(Term::kImpostorPixels)] = 0.25;
-  EXPECT_DOUBLE_EQ(model.most_pixel_ms(10.0), 2.0);
+  EXPECT_DOUBLE_EQ(model.most_pixel_ms(std::array{Term::kPlainPixels, Term::kTexturedPixels}, 10.0), 2.0);
+  EXPECT_DOUBLE_EQ(model.most_pixel_ms(std::array{Term::kPlainPixels}, 10.0), 1.0);
+  EXPECT_DOUBLE_EQ(model.most_pixel_ms({}, 10.0), 0.0);
   Features features;
   features[Term::kImpostorPixels] = 100.0;
   EXPECT_DOUBLE_EQ(model.cost(features).fixed_ms, 25.0);
@@ -85,7 +87,7 @@ TEST(TimeModel, SumIsNeverLessThanTheLongerStage) {
   for (std::uint64_t seed = 0; seed < 200; ++seed) {
     Rng rng(seed, 2);
     TimeModel model = model_with({{kInfinity, 1.0}});
-      Features frame;
+    Features frame;
     for (std::size_t i = 0; i < kTermCount; ++i) {
       model.milliseconds_per_unit[i] = std::pow(10.0, rng.uniform(-9.0, 3.0));
       frame.value[i] = rng.uniform() < 0.3 ? 0.0 : std::pow(10.0, rng.uniform(-3.0, 9.0));

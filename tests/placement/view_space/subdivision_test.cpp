@@ -138,6 +138,23 @@ TEST(Subdivision, FindsExactlyTheRegionsOverBudget) {
   }
 }
 
+/// What is left of a region's bound once some objects are replaced bounds the frame without them, in both linear forms and however stages
+/// combine.
+void expect_bound_of_subsets(TimeModel model, const FeatureTable& features, const View& view, const Subdivision& found, const Cpv& cpv,
+                             Rng& rng) {
+  std::vector<std::uint32_t> kept;
+  double bound_ms = cpv.constant_ms;
+  for (const RegionTerm& term : found.terms_of(cpv)) {
+    if (rng.uniform() < 0.5) continue;
+    kept.push_back(term.object);
+    bound_ms += term.predicted_ms;
+  }
+  for (const Combination combination : {Combination::kSum, Combination::kMax}) {
+    model.combination = combination;
+    ASSERT_LE(model.predicted_ms(features.frame(kept, view)), bound_ms * (1 + 1e-12));
+  }
+}
+
 TEST(Subdivision, BoundsHoldForEverySampledView) {
   std::printf("seed %llu\n", static_cast<unsigned long long>(kSeed));
   const World world = small_town();
@@ -160,13 +177,10 @@ TEST(Subdivision, BoundsHoldForEverySampledView) {
       const auto cell = locator.find(view.position);
       ASSERT_TRUE(cell.has_value());
       const Cpv& cpv = regions.at({keys[*cell], interval_of(view.direction, 2)});
-      Cost frame;
-      for (std::uint32_t object = 0; object < world.scene.objects.size(); ++object)
-        frame += model.cost(features.estimate(object, PreparedView(view, world.camera)));
-      frame += model.cost(frame_features());
-      const double predicted_ms = model.predicted_ms(frame);
+      const double predicted_ms = model.predicted_ms(features.frame(world.all(), view));
       ASSERT_LE(predicted_ms, cpv.predicted_ms * (1 + 1e-12)) << "view " << i;
       tightest = std::max(tightest, predicted_ms / cpv.predicted_ms);
+      if (i % 8 == 0) expect_bound_of_subsets(model, features, view, found, cpv, rng);
     }
     EXPECT_GT(tightest, 0.5);  // the test could fail: some view comes near its bound
   }
@@ -288,14 +302,15 @@ TEST(Subdivision, TheSmallerLinearFormIsChosen) {
   const RegionEstimator estimator = world.estimator(model);
   const CellBoxes cells(world.space);
   const Subdivision found = world.subdivide_for(-1.0, model);
-  const double most_pixel_ms = model.most_pixel_ms(estimator.features().most_passed_pixels());
+  const double most_pixel_ms = model.most_pixel_ms(estimator.features().pixel_terms(), estimator.features().most_passed_pixels());
   std::size_t capped = 0;
   for (const Cpv& cpv : found.cpvs) {
     const CellCosts costs = estimator.cell_costs(cells.chain(found.cells[cpv.cell].key), world.all());
     const auto seen = found.terms_of(cpv);  // a draw costs something: every seen object has a term
     RegionSums sums = estimator.empty_frame();
     for (const ObjectCost& object : costs.objects)
-      if (std::any_of(seen.begin(), seen.end(), [&](const RegionTerm& term) { return term.object == object.object; })) sums.add(object.cost);
+      if (std::any_of(seen.begin(), seen.end(), [&](const RegionTerm& term) { return term.object == object.object; }))
+        sums.add(object.cost);
     EXPECT_EQ(cpv.pixels_capped, sums.capped_ms < sums.with_pixels_ms);
     EXPECT_EQ(cpv.predicted_ms, std::min(sums.capped_ms, sums.with_pixels_ms));
     EXPECT_NEAR(cpv.constant_ms, model.milliseconds_per_unit[0] + (cpv.pixels_capped ? most_pixel_ms : 0.0), 1e-12);

@@ -31,6 +31,7 @@ TEST(SampleStatistics, HostSpeedCancels) {
   EXPECT_DOUBLE_EQ(sample.raw_milliseconds, 20.0);
   EXPECT_DOUBLE_EQ(sample.spread, 0.0);
   EXPECT_EQ(sample.rejected, 0);
+  EXPECT_DOUBLE_EQ(sample.spent_milliseconds, 145.0 + 13.0);
 }
 
 TEST(SampleStatistics, ContaminatedRepeatsDoNotCountUnlessAllAre) {
