@@ -15,6 +15,7 @@
 #include "render/impostor/atlas.h"
 #include "render/impostor/bake.h"
 #include "render/scene/hierarchy.h"
+#include "render/visibility/raytracer.h"
 
 namespace standin {
 namespace {
@@ -79,7 +80,7 @@ struct Setup {
 class FrameSampler {
  public:
   FrameSampler(const Scene& scene, const Camera& camera, std::uint64_t seed, const WorkBudget& budget)
-      : scene_(scene), camera_(camera), hierarchy_(build_hierarchy(scene)), table_(scene, camera), rng_(seed), budget_(budget) {
+      : scene_(scene), camera_(camera), hierarchy_(build_hierarchy(scene)), table_(scene, camera), raytracer_(scene), rng_(seed), budget_(budget) {
     for (std::uint32_t id = 0; id < scene.objects.size(); ++id) all_objects_.push_back(id);
     bake_impostors();
   }
@@ -149,22 +150,24 @@ class FrameSampler {
     return {view_towards(rng_, eye, node.bounds.centre(), camera_), {objects_of(node), {}}};
   }
 
-  /// Upright, at eye height above the scene's floor or anywhere in its height, in no object's bounds but large flat ones; from around the
-  /// scene where there is no such place, or where nobody would walk.
+  /// Upright, at eye height above the scene's floor or anywhere in its height, where a walk may lead: under free sky, clear of objects. From
+  /// around the scene where there is no such place, or where nobody would walk.
   [[nodiscard]] View street_view() {
     if (is_exhibit(scene_)) return orbit_view();
     Box eyes = scene_.bounds;
     if (rng_.uniform() < 0.7) eyes.min.y = eyes.max.y = eyes.min.y + kEyeHeight_m;
     for (int attempt = 0; attempt < 32; ++attempt)
-      if (const Vec3 position = random_point(rng_, eyes); !inside_an_object(position))
+      if (const Vec3 position = random_point(rng_, eyes); is_open(position))
         return {position, random_direction(rng_, -0.25, 0.25)};
     return orbit_view();
   }
 
-  [[nodiscard]] bool inside_an_object(const Vec3& position) const {
-    return std::any_of(scene_.objects.begin(), scene_.objects.end(), [&](const Object& object) {
-      return object.bounds.contains(position) && object.bounds.diagonal() < 0.5 * scene_.bounds.diagonal();
-    });
+  [[nodiscard]] bool is_open(const Vec3& position) const {
+    constexpr double kClearance_m = 0.5;
+    if (raytracer_.nearest(position, {0.0, 1.0, 0.0})) return false;
+    for (const Vec3& direction : {Vec3(1.0, 0.0, 0.0), Vec3(-1.0, 0.0, 0.0), Vec3(0.0, 0.0, 1.0), Vec3(0.0, 0.0, -1.0)})
+      if (const auto hit = raytracer_.nearest(position, direction); hit && hit->distance_m < kClearance_m) return false;
+    return true;
   }
 
   [[nodiscard]] View orbit_view() {
@@ -203,11 +206,17 @@ class FrameSampler {
     Setup setup{view_towards(rng_, eye, shaft.apex, camera_), {}};
     const double others = among_originals ? 0.0 : rng_.uniform();  // each of the others as well, with this chance
     for (std::uint32_t other = 0; other < count; ++other)
-      if (other == id || rng_.uniform() < others) setup.list.impostors.push_back(other);
+      if (other == id || (rng_.uniform() < others && is_far_from(other, eye))) setup.list.impostors.push_back(other);
     if (among_originals)
       std::set_difference(all_objects_.begin(), all_objects_.end(), drawn.objects.begin(), drawn.objects.end(),
                           std::back_inserter(setup.list.objects));
     return setup;
+  }
+
+  /// No nearer than the impostor's view cell is, so that its texels are about as small as there.
+  [[nodiscard]] bool is_far_from(std::uint32_t impostor, const Vec3& eye) const {
+    const Shaft& shaft = std::get<Shaft>(impostors_.impostors[impostor].view_cell);
+    return glm::distance(eye, shaft.apex) >= shaft.min_distance_m;
   }
 
   [[nodiscard]] std::optional<Impostor> bake_one() {
@@ -241,6 +250,7 @@ class FrameSampler {
   Camera camera_;
   Hierarchy hierarchy_;
   FeatureTable table_;
+  Raytracer raytracer_;
   Rng rng_;
   const WorkBudget& budget_;
   std::vector<std::uint32_t> all_objects_;
