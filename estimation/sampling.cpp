@@ -26,6 +26,7 @@ constexpr int kImpostorAttempts = 40;
 constexpr std::uint64_t kMaxBakedTriangles = 30'000;  // baking is not what the seconds are for
 constexpr double kEyeHeight_m = 1.7;
 constexpr int kAttempts = 8;
+constexpr double kJustOutside = 1.1;  // bounding radii
 constexpr double kLeastTriangles = 1e5;   // however small a scene is, it does not take more turns than one of so many
 constexpr std::size_t kWarmUpFrames = 8;  // one of each kind: compiles the shaders
 
@@ -145,8 +146,11 @@ class FrameSampler {
 
   [[nodiscard]] Setup cluster() {
     const HierarchyNode& node = random_node();
-    const double distance_m = std::max(camera_.near_m, log_uniform(rng_, 0.6, 16.0) * 0.5 * node.bounds.diagonal());
-    const Vec3 eye = node.bounds.centre() + distance_m * random_direction(rng_, -0.1, 0.9);
+    const double radius_m = 0.5 * node.bounds.diagonal();
+    const double distance_m = std::max(camera_.near_m, log_uniform(rng_, 0.6, 16.0) * radius_m);
+    const Vec3 direction = random_direction(rng_, -0.1, 0.9);
+    Vec3 eye = node.bounds.centre() + distance_m * direction;
+    if (node.bounds.contains(eye)) eye = node.bounds.centre() + kJustOutside * radius_m * direction;
     return {view_towards(rng_, eye, node.bounds.centre(), camera_), {objects_of(node), {}}};
   }
 

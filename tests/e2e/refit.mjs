@@ -44,6 +44,34 @@ test("again: the same bytes", () => {
   assert.ok(readFileSync(join(folder, "target.json")).equals(readFileSync(join(folder, "again.json"))));
 });
 
+test("an error within reach is exit 0, one out of reach exit 1, and the target is written all the same", () => {
+  const args = ["calibrate", "--refit", csv, "--json", "-o", join(folder, "aimed.json"), "--target-error"];
+  const reached = JSON.parse(expectExit(0, ...args, "0.05").out);
+  assert.ok(reached.median_error <= 0.05 && reached.held_out_frames === 300 && reached.misses <= 6, JSON.stringify(reached));
+  expectExit(1, ...args, "1e-6");
+  assert.equal(readJson(join(folder, "aimed.json")).quality.samples, 300);
+});
+
+test("the learning curve and the coverage asked for are in the target", () => {
+  expectExit(0, "calibrate", "--refit", csv, "--coverage", "0.9", "-o", join(folder, "loose.json"));
+  const { model, quality } = readJson(join(folder, "loose.json"));
+  assert.equal(model.coverage, 0.9);
+  assert.deepEqual(quality.learning_curve.map((point) => [point.seconds, point.frames]), [[5, 50], [10, 100], [20, 200], [30, 300]]);
+});
+
+test("the explanation is in words", () => {
+  const { out } = expectExit(0, "calibrate", "--refit", csv, "--explain", "-o", join(folder, "words.json"));
+  assert.match(out, /an empty frame costs 300 us\n/);
+  assert.match(out, /a draw call costs 4\.0 us\n/);
+});
+
+test("what would be ignored is refused", () => {
+  const target = join(folder, "target.json");
+  for (const words of [["--refit", csv, "scene.glb", "-o", target], ["--evaluate", target, "-o", join(folder, "x.json")], ["--evaluate", target, "--explain"],
+                       ["--evaluate", target, "--coverage", "0.9"], ["--evaluate", target, "--target-error", "0.1"], ["--refit", csv, "--samples", csv, "-o", target]])
+    assert.match(expectExit(2, "calibrate", ...words).err, /\[bad_usage\]/, words.join(" "));
+});
+
 test("a broken row is named with its line, and nothing is written", () => {
   const broken = join(folder, "broken.csv");
   writeFileSync(broken, samples(20).replace("\n1,", "\n1,fast"));

@@ -98,6 +98,17 @@ TEST_F(TargetFile, ComesBackBitForBit) {
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_), {}), 1) << "nothing is left beside it";
 }
 
+TEST(ShippedTargets, CanBeRead) {
+  int read = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(std::filesystem::path(STANDIN_SOURCE_DIR) / "configs/targets")) {
+    const Target target = read_target(entry.path());
+    EXPECT_GT(target.model.bound_ms(10.0), 10.0) << entry.path();
+    EXPECT_FALSE(target.learning_curve.empty()) << entry.path();
+    ++read;
+  }
+  EXPECT_GT(read, 0);
+}
+
 TEST_F(TargetFile, SameTargetSameBytesSameDigest) {
   write_target(some_target(), file());
   const std::string first = read_target(file()).sha256;
