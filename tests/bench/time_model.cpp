@@ -32,6 +32,13 @@ Frames first_seconds(const Frames& frames, double seconds) {
   return first;
 }
 
+/// Samples in milliseconds of the reference frame that the training's are in.
+Frames frames_of(const std::string& file, double reference_ms) {
+  CalibrationSamples samples = read_samples(file);
+  for (TimedFrame& frame : samples.frames) frame.milliseconds *= reference_ms / samples.machine.reference_ms;
+  return samples.frames;
+}
+
 /// Frames of originals alone, their pixel terms scaled to what passed in the device.
 Frames with_counted_pixels(const Frames& frames) {
   Frames told;
@@ -71,7 +78,9 @@ void print_repeat(const std::string& name, const Frames& first, const Frames& se
 int main(int argc, char** argv) {
   if (argc < 3) return std::fprintf(stderr, "usage: time_model TRAIN.csv NAME=TEST.csv ... [again NAME=SAME.csv ...]\n"), 2;
   constexpr double kCoverage = 0.99;
-  const Frames train = read_samples(argv[1]).frames;
+  const CalibrationSamples training = read_samples(argv[1]);
+  const Frames& train = training.frames;
+  const double reference_ms = training.machine.reference_ms;
   std::map<std::string, Frames> tests, repeats;
   Frames all;
   bool again = false;
@@ -81,9 +90,9 @@ int main(int argc, char** argv) {
     if (argument == "again") {
       again = true;
     } else if (again) {
-      repeats[argument.substr(0, equals)] = read_samples(argument.substr(equals + 1)).frames;
+      repeats[argument.substr(0, equals)] = frames_of(argument.substr(equals + 1), reference_ms);
     } else {
-      const Frames frames = read_samples(argument.substr(equals + 1)).frames;
+      const Frames frames = frames_of(argument.substr(equals + 1), reference_ms);
       tests[argument.substr(0, equals)] = frames;
       all.insert(all.end(), frames.begin(), frames.end());
     }
