@@ -9,6 +9,9 @@ namespace standin {
 namespace {
 
 constexpr std::uint32_t kSamplesPerMesh = 64;
+// Of a triangle, in pixels. A larger one costs by its pixels; and of the many triangles of a near object, a bound counts each at its
+// nearest: without a limit their edges alone would fill a region's budget (tests/bench/region_bound.md).
+constexpr double kMostEdgePixels = 16.0;
 constexpr std::array<Term, kPixelKindCount> kPixelTerm = {Term::kPlainPixels, Term::kTexturedPixels, Term::kMaskedPixels};
 
 /// The matrix that takes vector areas where `m` takes points.
@@ -49,13 +52,25 @@ PartStyle style_of(const Scene& scene, const Part& part) {
   return {pixel_kind(scene, part), scene.materials[part.material].double_sided};
 }
 
-/// Adds what samples show in one image.
+/// What a part shows, or may show at most.
+struct PartSum {
+  double triangles = 0.0;
+  double edge_pixels = 0.0;
+  double pixels = 0.0;  // generated
+
+  /// No longer than the edges of so many triangles of twice the mesh's slenderness that share so many pixels (Cauchy and Schwarz): of a
+  /// large part near the eye, only as much as there is room for in the image. Monotone in all three, so a bound stays one.
+  void limit_edges(double slenderness, double most_pixels) {
+    edge_pixels = std::min(edge_pixels, 1.3 * slenderness * std::sqrt(triangles * std::min(pixels, most_pixels)));
+  }
+};
+
+/// What samples show in one image; their pixels go into its coverage, too.
 struct ImageSum {
   const Camera& camera;
   Projection projection;
-  double most_edge_pixels;
-  Features& sum;
   ScreenCoverage& coverage;
+  PartSum sum;
 
   void add(const std::vector<SurfaceSample>& samples, const PlacedMesh& mesh, const PartStyle& style) {
     for (const SurfaceSample& sample : samples) {
@@ -69,31 +84,32 @@ struct ImageSum {
 
  private:
   void add(const Patch& part, PixelKind kind) {
-    sum[Term::kOnScreenTriangles] += part.triangles;
-    sum[Term::kEdgePixels] += std::min(projection.edge_pixels(part), most_edge_pixels * part.triangles);
+    const double pixels = projection.pixels(part.centre, part.vector_area_m2);
+    sum.triangles += part.triangles;
+    sum.edge_pixels += std::min(projection.edge_pixels(part), kMostEdgePixels * part.triangles);
+    sum.pixels += pixels;
     const Vec2 place = Vec2(part.centre.x, -part.centre.y) * (projection.focal_px / -part.centre.z);
-    coverage.add(kind, place.x + 0.5 * camera.width, place.y + 0.5 * camera.height, projection.pixels(part.centre, part.vector_area_m2));
+    coverage.add(kind, place.x + 0.5 * camera.width, place.y + 0.5 * camera.height, pixels);
   }
 };
 
 /// The most that samples may show to any eye in a box.
-struct BoxSum {
-  const ProjectionFromBox& projection;
-  double most_edge_pixels;
-  double triangles = 0.0;
-  double edge_pixels = 0.0;
-  double pixels = 0.0;
-
-  void add(const std::vector<SurfaceSample>& samples, const PlacedMesh& mesh, const PartStyle& style) {
-    for (const SurfaceSample& sample : samples) {
-      const MostInImage most = projection.most(mesh.place(sample), style.double_sided);
-      if (!most.faces) continue;
-      triangles += sample.triangles;
-      edge_pixels += std::min(most.edge_pixels, most_edge_pixels * sample.triangles);
-      pixels += most.pixels;
-    }
+PartSum most_from_box(const std::vector<SurfaceSample>& samples, const PlacedMesh& mesh, const PartStyle& style,
+                      const ProjectionFromBox& projection) {
+  PartSum sum;
+  for (const SurfaceSample& sample : samples) {
+    const MostInImage most = projection.most(mesh.place(sample), style.double_sided);
+    if (!most.faces) continue;
+    sum.triangles += sample.triangles;
+    sum.edge_pixels += std::min(most.edge_pixels, kMostEdgePixels * sample.triangles);
+    sum.pixels += most.pixels;
   }
-};
+  return sum;
+}
+
+PartSum larger(const PartSum& a, const PartSum& b) {
+  return {std::max(a.triangles, b.triangles), std::max(a.edge_pixels, b.edge_pixels), std::max(a.pixels, b.pixels)};
+}
 
 void add_passed(const ScreenCoverage& coverage, Features& sum) {
   const auto passed = coverage.passed();
@@ -109,10 +125,7 @@ PixelKind pixel_kind(const Scene& scene, const Part& part) {
 }
 
 FeatureTable::FeatureTable(const Scene& scene, const Camera& camera)
-    : scene_(&scene),
-      camera_(camera),
-      most_passed_pixels_(kOverdraw * camera.width * camera.height),
-      most_edge_pixels_(2.0 * (camera.width + camera.height)) {
+    : scene_(&scene), camera_(camera), most_passed_pixels_(kOverdraw * camera.width * camera.height) {
   samples_.reserve(scene.meshes.size());
   for (const Mesh& mesh : scene.meshes) samples_.push_back(sample_surface(mesh, kSamplesPerMesh));
   shapes_.reserve(scene.objects.size());
@@ -139,11 +152,14 @@ void FeatureTable::add(std::uint32_t object, const PreparedView& view, Features&
   sum += shapes_[object].counts;
   const PlacedMesh mesh(drawn.world_from_object, view.eye_from_world, view.position);
   const bool near = distance(view.position, drawn.bounds) < shapes_[object].radius_m;
-  ImageSum image{camera_, Projection(camera_), most_edge_pixels_, sum, coverage};
   for (std::uint32_t p = drawn.first_part; p < drawn.first_part + drawn.part_count; ++p) {
     const Part& part = scene_->parts[p];
     const SurfaceSamples& samples = samples_[part.mesh];
+    ImageSum image{camera_, Projection(camera_), coverage, {}};
     image.add(near ? samples.near_samples : samples.samples, mesh, style_of(*scene_, part));
+    image.sum.limit_edges(samples.slenderness, most_passed_pixels_);
+    sum[Term::kOnScreenTriangles] += image.sum.triangles;
+    sum[Term::kEdgePixels] += image.sum.edge_pixels;
   }
 }
 
@@ -165,12 +181,13 @@ Features FeatureTable::bound(std::uint32_t object, const Box& eyes) const {
   for (std::uint32_t p = drawn.first_part; p < drawn.first_part + drawn.part_count; ++p) {
     const Part& part = scene_->parts[p];
     const PartStyle style = style_of(*scene_, part);
-    BoxSum far{projection, most_edge_pixels_}, near{projection, most_edge_pixels_};
-    far.add(samples_[part.mesh].samples, mesh, style);
-    if (maybe_near) near.add(samples_[part.mesh].near_samples, mesh, style);
-    features[Term::kOnScreenTriangles] += std::max(far.triangles, near.triangles);
-    features[Term::kEdgePixels] += std::max(far.edge_pixels, near.edge_pixels);
-    features[kPixelTerm[static_cast<std::size_t>(style.kind)]] += std::max(far.pixels, near.pixels);
+    const SurfaceSamples& samples = samples_[part.mesh];
+    PartSum most = most_from_box(samples.samples, mesh, style, projection);
+    if (maybe_near) most = larger(most, most_from_box(samples.near_samples, mesh, style, projection));
+    most.limit_edges(samples.slenderness, most_passed_pixels_);
+    features[Term::kOnScreenTriangles] += most.triangles;
+    features[Term::kEdgePixels] += most.edge_pixels;
+    features[kPixelTerm[static_cast<std::size_t>(style.kind)]] += most.pixels;
   }
   for (const Term term : kPixelTerm) features[term] = std::min(features[term], most_passed_pixels_);
   return features;

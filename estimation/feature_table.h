@@ -50,7 +50,6 @@ class FeatureTable {
   Camera camera_;
   double most_passed_pixels_;
   std::vector<Term> pixel_terms_;
-  double most_edge_pixels_;              // of a triangle: no part of the image has a longer outline than the image
   std::vector<SurfaceSamples> samples_;  // per mesh
   std::vector<ObjectShape> shapes_;      // per object
 };

@@ -100,7 +100,8 @@ std::vector<SurfaceSample> draw_samples(const Mesh& mesh, const Totals& totals, 
 SurfaceSamples sample_surface(const Mesh& mesh, std::uint32_t count) {
   if (mesh.triangle_count() == 0) return {};
   const Totals totals = totals_of(mesh);
-  return {draw_samples(mesh, totals, count), draw_samples(mesh, totals, kNearFactor * count)};
+  const double slenderness = ratio_or_zero(totals.edges_m, std::sqrt(totals.triangles * totals.area_m2));
+  return {draw_samples(mesh, totals, count), draw_samples(mesh, totals, kNearFactor * count), slenderness};
 }
 
 }  // namespace standin

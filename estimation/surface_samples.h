@@ -23,6 +23,7 @@ struct SurfaceSample {
 struct SurfaceSamples {
   std::vector<SurfaceSample> samples;
   std::vector<SurfaceSample> near_samples;  // the same surface in more samples, for an eye so near that some fill the image
+  double slenderness = 0.0;                 // edges / sqrt(triangles * area): 4.6 for equilateral triangles, more for slivers
 };
 
 inline constexpr std::uint32_t kNearFactor = 16;

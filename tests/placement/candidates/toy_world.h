@@ -73,6 +73,7 @@ inline ToyWorld empty_toy_world() {
   ToyWorld world;
   world.model.milliseconds_per_unit[static_cast<std::size_t>(Term::kDraws)] = 0.01;
   world.model.milliseconds_per_unit[static_cast<std::size_t>(Term::kTriangles)] = 1e-3;
+  world.model.milliseconds_per_unit[static_cast<std::size_t>(Term::kImpostorQuads)] = 2e-3;
   world.model.milliseconds_per_unit[static_cast<std::size_t>(Term::kImpostorPixels)] = 1e-6;
   world.model.bound_steps = {{std::numeric_limits<double>::infinity(), 1.0}};
   return world;

@@ -17,6 +17,7 @@ using testing::HasSubstr;
 Target one_ms_per_triangle() {
   Target target;
   target.model.milliseconds_per_unit[static_cast<std::size_t>(Term::kTriangles)] = 1.0;
+  target.model.milliseconds_per_unit[static_cast<std::size_t>(Term::kImpostorQuads)] = 2.0;
   return target;
 }
 
