@@ -11,7 +11,7 @@ namespace {
 constexpr std::uint32_t kSamplesPerMesh = 64;
 // Of a triangle, in pixels. A larger one costs by its pixels; and of the many triangles of a near object, a bound counts each at its
 // nearest: without a limit their edges alone would fill a region's budget (tests/bench/region_bound.md).
-constexpr double kMostEdgePixels = 16.0;
+constexpr double kMostEdgePixels = 64.0;
 constexpr std::array<Term, kPixelKindCount> kPixelTerm = {Term::kPlainPixels, Term::kTexturedPixels, Term::kMaskedPixels};
 
 /// The matrix that takes vector areas where `m` takes points.

@@ -9,10 +9,10 @@ rmSync(fixture, { recursive: true, force: true });
 mkdirSync(fixture, { recursive: true });
 
 test("make-city writes as many objects and triangles as asked", () => {
-  expectExit(0, "make-city", "--objects", "100", "--triangles", "100000", "--seed", "1", "-o", city);
+  expectExit(0, "make-city", "--objects", "150", "--triangles", "150000", "--seed", "1", "-o", city);
   const info = JSON.parse(expectExit(0, "info", city, "--json").out);
-  assert.equal(info.objects, 100);
-  assert.ok(Math.abs(info.triangles - 100000) <= 1000, `${info.triangles} triangles`);
+  assert.equal(info.objects, 150);
+  assert.ok(Math.abs(info.triangles - 150000) <= 1500, `${info.triangles} triangles`);
   assert.equal(info.default_view_space.kind, "walk");
 });
 

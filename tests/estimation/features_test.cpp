@@ -96,11 +96,11 @@ TEST(Estimate, OfASquareFacingTheEyeIsItsImage) {
   EXPECT_EQ(features[Term::kTextureSwitches], 0.0);
   EXPECT_EQ(features[Term::kTriangles], 32.0);
   EXPECT_NEAR(features[Term::kOnScreenTriangles], 32.0, 1e-9);
-  EXPECT_NEAR(features[Term::kEdgePixels], 32.0 * 16.0, 1e-9);  // each is longer
-  add_object(scene, grid_mesh(1.0F, 4), moved(0, 0, -200), true);
-  // 16 cells' outline and diagonal, each a quarter of the square, two triangles each.
-  const double edges = 16.0 * (4.0 + 2.0 * std::numbers::sqrt2) * 0.25 * focal_px * 0.01;
-  EXPECT_NEAR(object_features(scene, 1, kAhead, kCamera)[Term::kEdgePixels], edges, 0.01 * edges);
+  // 16 cells' outline and diagonal, each a quarter of the square, two triangles each: 53 pixels a triangle.
+  const double edges = 16.0 * (4.0 + 2.0 * std::numbers::sqrt2) * 0.25 * focal_px * 0.1;
+  EXPECT_NEAR(features[Term::kEdgePixels], edges, 0.01 * edges);
+  add_object(scene, grid_mesh(1.0F, 4), moved(0, 0, -5), true);
+  EXPECT_NEAR(object_features(scene, 1, kAhead, kCamera)[Term::kEdgePixels], 32.0 * 64.0, 1e-6) << "edges longer than that do not count";
   EXPECT_EQ(features[Term::kFrame], 0.0);
 }
 
