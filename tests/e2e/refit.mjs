@@ -76,7 +76,7 @@ test("a broken row is named with its line, and nothing is written", () => {
   const broken = join(folder, "broken.csv");
   writeFileSync(broken, samples(20).replace("\n1,", "\n1,fast"));
   const before = readdirSync(folder).sort();
-  assert.match(expectExit(2, "calibrate", "--refit", broken, "-o", join(folder, "no.json")).err, /broken\.csv, line 9: "fast.*\[file_broken\]/);
+  assert.match(expectExit(2, "calibrate", "--refit", broken, "-o", join(folder, "no.json")).err, /broken\.csv, line 10: "fast.*\[file_broken\]/);
   assert.match(expectExit(2, "calibrate", "--refit", csv).err, /-o FILE.*\[bad_usage\]/);
   assert.deepEqual(readdirSync(folder).sort(), before);
 });
