@@ -9,9 +9,14 @@ namespace standin {
 namespace {
 
 constexpr std::uint32_t kSamplesPerMesh = 64;
-// Of a triangle, in pixels. A larger one costs by its pixels; and of the many triangles of a near object, a bound counts each at its
-// nearest: without a limit their edges alone would fill a region's budget (tests/bench/region_bound.md).
-constexpr double kMostEdgePixels = 64.0;
+// Of a triangle, in pixels, by kind. A larger one costs by its pixels; and of the many triangles of a near object, a bound counts each at
+// its nearest: without a limit their edges alone would fill a region's budget (tests/bench/region_bound.md). Masked triangles are leaves,
+// many and near, and their pixels cost more: they have the lowest limit.
+constexpr std::array<double, kPixelKindCount> kMostEdgePixels = {64.0, 64.0, 16.0};
+
+double most_edge_pixels(PixelKind kind) {
+  return kMostEdgePixels[static_cast<std::size_t>(kind)];
+}
 constexpr std::array<Term, kPixelKindCount> kPixelTerm = {Term::kPlainPixels, Term::kTexturedPixels, Term::kMaskedPixels};
 
 /// The matrix that takes vector areas where `m` takes points.
@@ -86,7 +91,7 @@ struct ImageSum {
   void add(const Patch& part, PixelKind kind) {
     const double pixels = projection.pixels(part.centre, part.vector_area_m2);
     sum.triangles += part.triangles;
-    sum.edge_pixels += std::min(projection.edge_pixels(part), kMostEdgePixels * part.triangles);
+    sum.edge_pixels += std::min(projection.edge_pixels(part), most_edge_pixels(kind) * part.triangles);
     sum.pixels += pixels;
     const Vec2 place = Vec2(part.centre.x, -part.centre.y) * (projection.focal_px / -part.centre.z);
     coverage.add(kind, place.x + 0.5 * camera.width, place.y + 0.5 * camera.height, pixels);
@@ -101,7 +106,7 @@ PartSum most_from_box(const std::vector<SurfaceSample>& samples, const PlacedMes
     const MostInImage most = projection.most(mesh.place(sample), style.double_sided);
     if (!most.faces) continue;
     sum.triangles += sample.triangles;
-    sum.edge_pixels += std::min(most.edge_pixels, kMostEdgePixels * sample.triangles);
+    sum.edge_pixels += std::min(most.edge_pixels, most_edge_pixels(style.kind) * sample.triangles);
     sum.pixels += most.pixels;
   }
   return sum;

@@ -24,8 +24,9 @@ enum class Term : std::size_t {
   kTextureSwitches,    // of impostors' atlas pages
   kTriangles,          // submitted triangles
   kOnScreenTriangles,  // of these, inside the frustum and not culled as back sides
-  kEdgePixels,         // length of these triangles' edges in the image, at most 64 a triangle: blocks of pixels that are drawn in part
-  kPlainPixels,        // pixels without texture that pass the depth test
+  kEdgePixels,   // length of these triangles' edges in the image, at most 64 a triangle (16 if masked): blocks of pixels that are drawn in
+                 // part
+  kPlainPixels,  // pixels without texture that pass the depth test
   kTexturedPixels,
   kMaskedPixels,    // alpha-tested
   kImpostorQuads,   // two triangles each, of which the triangle terms know nothing
