@@ -37,9 +37,8 @@ test("a budget below what is reachable: the rest is solved, exit code 1", () => 
   const { metrics, out } = result;
   assert.ok(metrics.cpv.unsolved > 0 && metrics.cpv.solved > metrics.cpv.unsolved, JSON.stringify(metrics.cpv));
   expectExplained(result);
-  // Where the rounds of baking end, what is left is judged by what was baked, which may lack the one best candidate of a region.
-  const over = Math.max(...metrics.unsolved.map((entry) => entry.lowest_budget_ms)) / survey.reachable_all_ms;
-  assert.ok(over <= 1.01, `${over} times what survey called reachable for all`);
+  assert.ok(Math.max(...metrics.unsolved.map((entry) => entry.lowest_budget_ms)) <= survey.reachable_all_ms * (1 + 1e-9),
+            "what survey called reachable for all");
   assert.match(out, /^unsolved: cpv \d+ \(cell .*\): .* ms, lowest budget .* ms, because of \S+/m);
   const report = JSON.parse(expectExit(1, "check", result.folder, "--json").out);
   assert.equal(report.violations, 0, "unsolved regions are no violation, but no success either");
