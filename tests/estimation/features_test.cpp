@@ -149,8 +149,7 @@ TEST(Estimate, OfANearWallFillsTheScreen) {
     add_object(scene, grid_mesh(20.0F, 1), moved(0, 0, -2) * glm::rotate(Mat4(1.0), angle, Vec3(0, 1, 0)), false);
   for (std::uint32_t id = 0; id < 3; ++id) {
     const double pixels = object_features(scene, id, kAhead, kCamera)[Term::kPlainPixels];
-    EXPECT_GT(pixels, 0.55 * 512.0 * 512.0) << id;
-    EXPECT_LE(pixels, 1.5 * 512.0 * 512.0) << id;
+    EXPECT_NEAR(pixels, 512.0 * 512.0, 0.45 * 512.0 * 512.0) << id;
   }
 }
 
