@@ -4,6 +4,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "estimation/learning_curve_json.h"
 #include "estimation/time_model.h"
 #include "render/base/error.h"
 #include "render/base/sha256.h"
@@ -118,18 +119,6 @@ std::vector<LearningPoint> read_learning_curve(const Reader& quality) {
                      point.number("coverage"), point.number("bound_over_measured_median")});
   }
   return curve;
-}
-
-Json learning_curve_json(const std::vector<LearningPoint>& curve) {
-  Json list = Json::array();
-  for (const LearningPoint& point : curve)
-    list.push_back({{"seconds", point.seconds},
-                    {"frames", point.frames},
-                    {"median_error", point.median_error},
-                    {"p90_error", point.p90_error},
-                    {"coverage", point.coverage},
-                    {"bound_over_measured_median", point.bound_over_measured_median}});
-  return list;
 }
 
 void check_format(const Json& json, const std::filesystem::path& file) {

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "estimation/explain.h"
+#include "estimation/learning_curve_json.h"
 #include "estimation/self_test.h"
 
 namespace standin {
@@ -37,18 +38,6 @@ json covariance_json(const FitSummary& fit) {
   return matrix;
 }
 
-json curve_json(const std::vector<LearningPoint>& curve) {
-  json list = json::array();
-  for (const LearningPoint& point : curve)
-    list.push_back({{"seconds", point.seconds},
-                    {"frames", point.frames},
-                    {"median_error", point.median_error},
-                    {"p90_error", point.p90_error},
-                    {"coverage", point.coverage},
-                    {"bound_over_measured_median", point.bound_over_measured_median}});
-  return list;
-}
-
 json fit_json(const FitSummary& fit, const std::vector<LearningPoint>& curve) {
   json terms = json::object();
   for (std::size_t i = 0; i < kTermCount; ++i) terms[std::string(term_name(static_cast<Term>(i)))] = fit.model.milliseconds_per_unit[i];
@@ -69,7 +58,7 @@ json fit_json(const FitSummary& fit, const std::vector<LearningPoint>& curve) {
           {"terms", terms_json(fit.terms)},
           {"relative_covariance", covariance_json(fit)},
           {"left_out", fit.left_out},
-          {"learning_curve", curve_json(curve)},
+          {"learning_curve", learning_curve_json(curve)},
           {"warnings", fit.warnings},
           {"explanation", explain(fit)}};
 }
