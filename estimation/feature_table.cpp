@@ -94,7 +94,7 @@ struct ImageSum {
     sum.edge_pixels += std::min(projection.edge_pixels(part), most_edge_pixels(kind) * part.triangles);
     sum.pixels += pixels;
     const Vec2 place = Vec2(part.centre.x, -part.centre.y) * (projection.focal_px / -part.centre.z);
-    coverage.add(kind, place.x + 0.5 * camera.width, place.y + 0.5 * camera.height, pixels);
+    coverage.add(kind, place.x + 0.5 * camera.width, place.y + 0.5 * camera.height, -part.centre.z, pixels);
   }
 };
 

@@ -35,7 +35,7 @@ enum class Term : std::size_t {
 };
 inline constexpr std::size_t kTermCount = static_cast<std::size_t>(Term::kCount);
 [[nodiscard]] std::string_view term_name(Term term);  // "draws" ...
-/// Pixels of originals: of a frame, together at most kOverdraw images (screen_coverage.h). An impostor's are not: its quads are masked, in
+/// Pixels of originals: of a frame, limited by the room in the image (screen_coverage.h). An impostor's are not: its quads are masked, in
 /// no depth order.
 [[nodiscard]] bool is_pixel_term(Term term);
 
