@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 
 namespace standin {
 namespace {
@@ -16,13 +17,32 @@ std::size_t conformal_rank(std::size_t n, double coverage) {
   return static_cast<std::size_t>(std::ceil((static_cast<double>(n) + 1.0) * coverage));
 }
 
-double conformal_ratio(const HeldOut* first, const HeldOut* last, double coverage) {
-  std::vector<double> ratios;
-  for (const HeldOut* frame = first; frame != last; ++frame)
-    ratios.push_back(frame->measured_ms / std::max(frame->predicted_ms, kLeastPredictedMs));
+double ratio_of(const HeldOut& frame) {
+  return frame.measured_ms / std::max(frame.predicted_ms, kLeastPredictedMs);
+}
+
+double quantile(std::vector<double> ratios, double coverage) {
   std::sort(ratios.begin(), ratios.end());
   const std::size_t rank = conformal_rank(ratios.size(), coverage);
   return rank <= ratios.size() ? ratios[rank - 1] : kTooFewFactor * ratios.back();
+}
+
+double conformal_ratio(const HeldOut* first, const HeldOut* last, double coverage) {
+  std::vector<double> ratios;
+  for (const HeldOut* frame = first; frame != last; ++frame) ratios.push_back(ratio_of(*frame));
+  return quantile(std::move(ratios), coverage);
+}
+
+/// By how much the steps must rise for every group to be covered.
+double raise_for_groups(const std::vector<HeldOut>& held_out, const std::vector<BoundStep>& steps, double coverage) {
+  std::map<std::uint32_t, std::vector<double>> ratios;
+  for (const HeldOut& frame : held_out) {
+    const auto step = std::find_if(steps.begin(), steps.end(), [&](const BoundStep& s) { return frame.predicted_ms < s.until_ms; });
+    ratios[frame.group].push_back(ratio_of(frame) / step->factor);
+  }
+  double most = 1.0;
+  for (auto& [group, of_group] : ratios) most = std::max(most, quantile(std::move(of_group), coverage));
+  return most;
 }
 
 /// Where the steps begin in the sorted frames, and their end; equal predictions stay in one step.
@@ -60,6 +80,8 @@ std::vector<BoundStep> conformal_steps(std::vector<HeldOut> held_out, double cov
     const double until_ms = is_last ? std::numeric_limits<double>::infinity() : held_out[borders[i + 1]].predicted_ms;
     result.push_back({until_ms, conformal_ratio(held_out.data() + borders[i], held_out.data() + borders[i + 1], coverage)});
   }
+  const double raise = raise_for_groups(held_out, result, coverage);
+  for (BoundStep& step : result) step.factor *= raise;
   return result;
 }
 

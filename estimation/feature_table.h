@@ -33,7 +33,7 @@ class FeatureTable {
   [[nodiscard]] Features frame(std::span<const std::uint32_t> objects, const View& view) const;
 
   [[nodiscard]] const Camera& camera() const { return camera_; }
-  /// What the opaque pixel terms of a frame's originals together are at most, and the masked one again; which of them the scene has at all.
+  /// What all pixel terms of a frame's originals together are at most, and which of them the scene has at all.
   [[nodiscard]] double most_passed_pixels() const { return most_passed_pixels_; }
   [[nodiscard]] std::span<const Term> pixel_terms() const { return pixel_terms_; }
 

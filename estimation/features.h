@@ -57,14 +57,14 @@ struct Features {
 /// What is known of an impostor's drawing cost: of a baked one, or of a candidate's estimate.
 struct ImpostorCost {
   double quads = 0.0;
-  double texels = 0.0;           // of all quads
+  double texels = 0.0;           // that its triangles cover, drawn at that angle
   double texel_angle_rad = 0.0;  // of a texel seen from the nearest point of the view cell (root of the solid angle), the greatest
 };
 [[nodiscard]] ImpostorCost impostor_cost(const Impostor& impostor);
 /// Upper bound over all views in the impostor's view cell at distance >= nearest_m from the represented objects. One draw; no switch
 /// (charged once per atlas page and frame).
 [[nodiscard]] Features impostor_features_bound(const ImpostorCost& cost, const Camera& camera);
-/// Estimate for one view in the view cell, summed over the quads; all zero when the objects' bounds miss the frustum.
+/// Estimate for one view in the view cell, summed over its triangles; all zero when the objects' bounds miss the frustum.
 [[nodiscard]] Features impostor_features(const Impostor& impostor, const Box& objects_bounds, const View& view, const Camera& camera);
 /// Features of an empty frame.
 [[nodiscard]] Features frame_features();

@@ -158,7 +158,8 @@ std::vector<HeldOut> held_out_predictions(const std::vector<TimedFrame>& frames,
   std::vector<HeldOut> held_out(judged_count(frames));
   for (const Rows& fold : folds) {
     const TimeModel model = fit_form(frames, rows_without(frames.size(), fold), form).model;
-    for (const std::size_t row : fold) held_out[row] = {model.predicted_ms(frames[row].features), frames[row].milliseconds};
+    for (const std::size_t row : fold)
+      held_out[row] = {model.predicted_ms(frames[row].features), frames[row].milliseconds, frames[row].group};
   }
   return held_out;
 }

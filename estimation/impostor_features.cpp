@@ -1,7 +1,8 @@
-// Features of impostors: quads of known texels, so pixels follow from texel sizes and distances (thesis Fig. 5.6).
+// Features of impostors: triangles of known places, so pixels follow from areas and distances (thesis Fig. 5.6).
 //
 // A texel of slope step e on the layer at distance A from the reference viewpoint is e A metres wide. Seen by an eye whose distance from
-// the layer's plane is h <= r, it covers f^2 (e A)^2 h / z^3 pixels, at most f^2 (e A / h)^2 / cos^3: least h, greatest texel angle.
+// the layer's plane is h <= r, it covers f^2 (e A)^2 h / z^3 pixels, at most f^2 (e A / h)^2 / cos^3: least h, greatest texel angle. A mesh
+// is measured by the same rule: each triangle counts as the texels of that greatest angle which its area would be at its nearest corner.
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -35,19 +36,57 @@ Features quad_features(double quads) {
   return features;
 }
 
+[[noreturn]] void reject(const char* what, double at_m, double border_m) {
+  throw Failure(ErrorWord::kInternal, std::string("impostor ") + what + " at " + std::to_string(at_m) +
+                                          " m reaches into its view cell, whose border is at " + std::to_string(border_m) + " m");
+}
+
+double greatest_texel_angle_rad(const Impostor& impostor, double nearest_m) {
+  double texel_angle_rad = 0.0;
+  for (const Layer& layer : impostor.layers) {
+    const double height_m = layer.distance_m - nearest_m;
+    if (!(height_m > 0.0)) reject("layer", layer.distance_m, nearest_m);
+    texel_angle_rad = std::max(texel_angle_rad, std::sqrt(texel_area_m2(impostor.frame, layer)) / height_m);
+  }
+  return texel_angle_rad;
+}
+
+/// A triangle's corners from the reference viewpoint.
+struct Corners {
+  Vec3 a, b, c;
+  [[nodiscard]] Vec3 centre() const { return (a + b + c) / 3.0; }
+  [[nodiscard]] Vec3 vector_area_m2() const { return 0.5 * glm::cross(b - a, c - a); }
+};
+
+template <class Visit>
+void for_each_triangle(const TexturedMesh& mesh, const Visit& visit) {
+  for (const Chart& chart : mesh.charts)
+    for (std::uint32_t i = chart.first_index; i < chart.first_index + chart.index_count; i += 3) {
+      const auto corner = [&](std::uint32_t k) { return mesh.vertices[chart.first_vertex + mesh.indices[i + k]].offset; };
+      visit(Corners{corner(0), corner(1), corner(2)});
+    }
+}
+
+double drawn_texels(const Impostor& impostor, double nearest_m, double texel_angle_rad) {
+  if (impostor.technique == Technique::kLayered) return static_cast<double>(impostor.texel_count());
+  double texels = 0.0;
+  for_each_triangle(impostor.mesh, [&](const Corners& triangle) {
+    const auto depth_m = [&](const Vec3& corner) { return glm::dot(corner, impostor.frame.forward); };
+    const double height_m = std::min({depth_m(triangle.a), depth_m(triangle.b), depth_m(triangle.c)}) - nearest_m;
+    if (!(height_m > 0.0)) reject("triangle", height_m + nearest_m, nearest_m);
+    texels += glm::length(triangle.vector_area_m2()) / std::pow(height_m * texel_angle_rad, 2);
+  });
+  return std::ceil(texels);
+}
+
 }  // namespace
 
 ImpostorCost impostor_cost(const Impostor& impostor) {
   const double nearest_m = nearest_along_forward_m(impostor);
-  double texel_angle_rad = 0.0;
-  for (const Layer& layer : impostor.layers) {
-    const double height_m = layer.distance_m - nearest_m;
-    if (!(height_m > 0.0))
-      throw Failure(ErrorWord::kInternal, "impostor layer at " + std::to_string(layer.distance_m) +
-                                              " m reaches into its view cell, whose border is at " + std::to_string(nearest_m) + " m");
-    texel_angle_rad = std::max(texel_angle_rad, std::sqrt(texel_area_m2(impostor.frame, layer)) / height_m);
-  }
-  return {static_cast<double>(impostor.quads.size()), static_cast<double>(impostor.texel_count()), texel_angle_rad};
+  const double texel_angle_rad = greatest_texel_angle_rad(impostor, nearest_m);
+  const double quads = impostor.technique == Technique::kLayered ? static_cast<double>(impostor.quads.size())
+                                                                 : std::ceil(0.5 * static_cast<double>(impostor.mesh.triangle_count()));
+  return {quads, drawn_texels(impostor, nearest_m, texel_angle_rad), texel_angle_rad};
 }
 
 Features impostor_features_bound(const ImpostorCost& cost, const Camera& camera) {
@@ -59,17 +98,16 @@ Features impostor_features_bound(const ImpostorCost& cost, const Camera& camera)
 
 Features impostor_features(const Impostor& impostor, const Box& objects_bounds, const View& view, const Camera& camera) {
   const PreparedView prepared(view, camera);
-  if (!may_intersect(prepared.frustum, objects_bounds) || impostor.quads.empty()) return {};
+  if (!may_intersect(prepared.frustum, objects_bounds) || impostor.empty()) return {};
   const Projection projection(camera);
-  Features features = quad_features(static_cast<double>(impostor.quads.size()));
-  for (const Quad& quad : impostor.quads) {
-    const Layer& layer = impostor.layers[quad.layer];
-    const Vec3 centre = layer_point(impostor.frame, layer.distance_m, quad.x + 0.5 * quad.width, quad.y + 0.5 * quad.height);
-    const Vec3 eye_point = prepared.eye_from_world * (centre - prepared.position);
-    if (!projection.sees(eye_point)) continue;
-    const double area_m2 = texel_area_m2(impostor.frame, layer) * quad.width * quad.height;
-    features[Term::kImpostorPixels] += projection.pixels(eye_point, area_m2 * (prepared.eye_from_world * impostor.frame.forward));
-  }
+  const TexturedMesh mesh = textured_mesh(impostor);
+  const Vec3 eye_from_viewpoint = impostor.frame.reference_viewpoint - prepared.position;
+  Features features = quad_features(0.5 * static_cast<double>(mesh.triangle_count()));
+  for_each_triangle(mesh, [&](const Corners& triangle) {
+    const Vec3 eye_point = prepared.eye_from_world * (eye_from_viewpoint + triangle.centre());
+    if (projection.sees(eye_point))
+      features[Term::kImpostorPixels] += projection.pixels(eye_point, prepared.eye_from_world * triangle.vector_area_m2());
+  });
   return features;
 }
 

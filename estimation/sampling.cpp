@@ -30,7 +30,8 @@ constexpr std::uint64_t kMaxBakedTriangles = 30'000;  // baking is not what the 
 constexpr double kEyeHeight_m = 1.7;
 constexpr int kAttempts = 8;
 constexpr int kBusySteps = 12;
-constexpr double kJustOutside = 1.1;  // bounding radii
+constexpr double kOneKindShare = 0.4;     // of clusters
+constexpr double kJustOutside = 1.1;      // bounding radii
 constexpr double kLeastTriangles = 1e5;   // however small a scene is, it does not take more turns than one of so many
 constexpr std::size_t kWarmUpFrames = 8;  // one of each kind: compiles the shaders
 
@@ -41,7 +42,7 @@ double log_uniform(Rng& rng, double low, double high) {
 /// What a frame asks for, each kind of work in units of about a millisecond of a software renderer.
 std::array<double, 6> work_of(const Features& features) {
   const double pixels = features[Term::kPlainPixels] + features[Term::kTexturedPixels] + features[Term::kMaskedPixels];
-  return {features[Term::kDraws] / 200.0,   features[Term::kTriangles] / 5e3,        features[Term::kEdgePixels] / 3e4, pixels / 5e4,
+  return {features[Term::kDraws] / 200.0,       features[Term::kTriangles] / 5e3,     features[Term::kEdgePixels] / 3e4, pixels / 5e4,
           features[Term::kImpostorQuads] / 1e3, features[Term::kImpostorPixels] / 5e4};
 }
 
@@ -77,8 +78,8 @@ View view_towards(Rng& rng, const Vec3& eye, const Vec3& target, const Camera& c
 std::uint32_t smallest_page(const std::vector<Impostor>& impostors) {
   std::uint32_t side = 256;
   for (const Impostor& impostor : impostors)
-    for (const Quad& quad : impostor.quads)
-      side = std::max({side, quad.width + 2 * AtlasOptions{}.gutter, quad.height + 2 * AtlasOptions{}.gutter});
+    for (const Chart& chart : textured_mesh(impostor).charts)
+      side = std::max({side, chart.width + 2 * AtlasOptions{}.gutter, chart.height + 2 * AtlasOptions{}.gutter});
   return side;
 }
 
@@ -91,7 +92,13 @@ struct Setup {
 class FrameSampler {
  public:
   FrameSampler(const Scene& scene, const Camera& camera, std::uint64_t seed, const WorkBudget& budget)
-      : scene_(scene), camera_(camera), hierarchy_(build_hierarchy(scene)), table_(scene, camera), raytracer_(scene), rng_(seed), budget_(budget) {
+      : scene_(scene),
+        camera_(camera),
+        hierarchy_(build_hierarchy(scene)),
+        table_(scene, camera),
+        raytracer_(scene),
+        rng_(seed),
+        budget_(budget) {
     for (std::uint32_t id = 0; id < scene.objects.size(); ++id) all_objects_.push_back(id);
     bake_impostors();
   }
@@ -163,18 +170,26 @@ class FrameSampler {
     const Vec3 direction = random_direction(rng_, -0.1, 0.9);
     Vec3 eye = node.bounds.centre() + distance_m * direction;
     if (node.bounds.contains(eye)) eye = node.bounds.centre() + kJustOutside * radius_m * direction;
-    return {view_towards(rng_, eye, node.bounds.centre(), camera_), {objects_of(node), {}}};
+    std::vector<std::uint32_t> objects = objects_of(node);
+    if (rng_.uniform() < kOneKindShare) keep_one_kind(objects);
+    return {view_towards(rng_, eye, node.bounds.centre(), camera_), {std::move(objects), {}}};
   }
 
-  /// Upright, at eye height above the scene's floor or anywhere in its height, where a walk may lead: under free sky, clear of objects. From
-  /// around the scene where there is no such place, or where nobody would walk.
+  /// What only comes beside costlier things is hard to tell from nothing.
+  void keep_one_kind(std::vector<std::uint32_t>& objects) {
+    const auto kind_of = [&](std::uint32_t object) { return pixel_kind(scene_, scene_.parts[scene_.objects[object].first_part]); };
+    const PixelKind kept = kind_of(objects[rng_.below(objects.size())]);
+    std::erase_if(objects, [&](std::uint32_t object) { return kind_of(object) != kept; });
+  }
+
+  /// Upright, at eye height above the scene's floor or anywhere in its height, where a walk may lead: under free sky, clear of objects.
+  /// From around the scene where there is no such place, or where nobody would walk.
   [[nodiscard]] View street_view() {
     if (is_exhibit(scene_)) return orbit_view();
     Box eyes = scene_.bounds;
     if (rng_.uniform() < 0.7) eyes.min.y = eyes.max.y = eyes.min.y + kEyeHeight_m;
     for (int attempt = 0; attempt < 32; ++attempt)
-      if (const Vec3 position = random_point(rng_, eyes); is_open(position))
-        return {position, random_direction(rng_, -0.25, 0.25)};
+      if (const Vec3 position = random_point(rng_, eyes); is_open(position)) return {position, random_direction(rng_, -0.25, 0.25)};
     return orbit_view();
   }
 
@@ -268,7 +283,7 @@ class FrameSampler {
     for (const std::uint32_t id : request.objects) triangles += scene_.objects[id].triangle_count;
     if (triangles > kMaxBakedTriangles || !plan_impostor(node.bounds, shaft, camera_, {}).possible) return std::nullopt;
     Impostor impostor = bake_layered(scene_, request, camera_, {}, budget_);
-    return impostor.quads.empty() ? std::nullopt : std::optional(std::move(impostor));
+    return impostor.empty() ? std::nullopt : std::optional(std::move(impostor));
   }
 
   void bake_impostors() {

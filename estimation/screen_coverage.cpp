@@ -54,10 +54,11 @@ std::array<double, kPixelKindCount> ScreenCoverage::passed() const {
   std::array<double, kPixelKindCount> sum{};
   for (const Cell& cell : cells_) {
     const double opaque = cell.plain + cell.textured;
-    const double share = opaque > full ? full / opaque : 1.0;
+    const double masked = masked_passed(cell);
+    const double share = opaque > full - masked ? (full - masked) / opaque : 1.0;
     sum[static_cast<std::size_t>(PixelKind::kPlain)] += share * cell.plain;
     sum[static_cast<std::size_t>(PixelKind::kTextured)] += share * cell.textured;
-    sum[static_cast<std::size_t>(PixelKind::kMasked)] += masked_passed(cell);
+    sum[static_cast<std::size_t>(PixelKind::kMasked)] += masked;
   }
   return sum;
 }

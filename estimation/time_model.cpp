@@ -29,12 +29,9 @@ double TimeModel::predicted_ms(const Cost& frame) const {
 }
 
 double TimeModel::most_pixel_ms(std::span<const Term> terms, double passed_pixels) const {
-  double opaque = 0.0, masked = 0.0;
-  for (const Term term : terms) {
-    double& costliest = term == Term::kMaskedPixels ? masked : opaque;
-    costliest = std::max(costliest, milliseconds_per_unit[static_cast<std::size_t>(term)]);
-  }
-  return passed_pixels * (opaque + masked);
+  double costliest = 0.0;
+  for (const Term term : terms) costliest = std::max(costliest, milliseconds_per_unit[static_cast<std::size_t>(term)]);
+  return passed_pixels * costliest;
 }
 
 double TimeModel::bound_ms(double predicted_ms) const {

@@ -48,8 +48,7 @@ struct TimeModel {
   [[nodiscard]] double predicted_ms(const Features& frame) const;
   /// The stages added up: an upper bound where they overlap.
   [[nodiscard]] double predicted_ms(const Cost& frame) const;
-  /// The most that the pixels of a frame's originals may cost, of which these terms occur: `passed_pixels` of the costliest opaque kind at
-  /// most, and as many masked ones (screen_coverage.h).
+  /// The most that the pixels of a frame's originals may cost, where at most `passed_pixels` of these terms pass.
   [[nodiscard]] double most_pixel_ms(std::span<const Term> terms, double passed_pixels) const;
   /// Non-decreasing; 0 at 0.
   [[nodiscard]] double bound_ms(double predicted_ms) const;

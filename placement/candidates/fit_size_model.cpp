@@ -39,7 +39,7 @@ std::optional<SizeSample> bake_size_sample(const Scene& scene, const ObjectOutli
   if (!std::isfinite(sketch.layers)) return std::nullopt;
   try {
     const Impostor impostor = bake_layered(scene, textures, {candidate.objects, candidate.view_cell}, camera, quality, budget);
-    if (impostor.quads.empty()) return std::nullopt;
+    if (impostor.empty()) return std::nullopt;
     return SizeSample{size_input(scene, outlines, candidate.objects, sketch),
                       {static_cast<double>(texture_bytes(impostor)), static_cast<double>(impostor.texel_count()),
                        static_cast<double>(impostor.quads.size())}};

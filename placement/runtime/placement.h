@@ -36,8 +36,8 @@ struct PlacementImpostor {
   ViewCell view_cell;
   ImpostorFrame frame;
   std::vector<Layer> layers;
-  std::uint32_t quads = 0;
-  std::uint64_t texels = 0;  // of all quads, without gutters
+  std::uint32_t quads = 0;   // two triangles each
+  std::uint64_t texels = 0;  // that its triangles cover (ImpostorCost)
   std::uint64_t texture_bytes = 0;
   std::uint64_t geometry_bytes = 0;
   double time_bound_ms = 0.0;  // at the nearest point of its view cell

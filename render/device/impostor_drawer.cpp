@@ -9,27 +9,22 @@
 namespace standin {
 namespace {
 
-// Corners in the order (0,0) (1,0) (1,1) (0,1) of texel coordinates.
-void append_quad(const Impostor& impostor, const Quad& quad, const AtlasSlot& slot, const Texture& page, Box& bounds,
-                 std::vector<DeviceVertex>& vertices, std::vector<std::uint32_t>& indices) {
-  const double distance_m = impostor.layers.at(quad.layer).distance_m;
+void append_chart(const TexturedMesh& mesh, const Chart& chart, const AtlasSlot& slot, const Texture& page,
+                  std::vector<DeviceVertex>& vertices, std::vector<std::uint32_t>& indices) {
   const auto first = static_cast<std::uint32_t>(vertices.size());
-  for (const auto& [right, down] : {std::pair{0U, 0U}, {1U, 0U}, {1U, 1U}, {0U, 1U}}) {
-    const std::uint32_t dx = right * quad.width;
-    const std::uint32_t dy = down * quad.height;
-    const Vec3 world = layer_point(impostor.frame, distance_m, quad.x + dx, quad.y + dy);
-    bounds.extend(world);
-    const Vec2 uv{static_cast<double>(slot.x + dx) / page.width, static_cast<double>(slot.y + dy) / page.height};
-    vertices.push_back({.position = glm::vec3(world - impostor.frame.reference_viewpoint), .normal = glm::vec3(0.0F), .uv = glm::vec2(uv)});
+  for (std::uint32_t i = chart.first_vertex; i < chart.first_vertex + chart.vertex_count; ++i) {
+    const ImpostorVertex& vertex = mesh.vertices[i];
+    const Vec2 uv{(slot.x + vertex.texel.x) / page.width, (slot.y + vertex.texel.y) / page.height};
+    vertices.push_back({.position = glm::vec3(vertex.offset), .normal = glm::vec3(0.0F), .uv = glm::vec2(uv)});
   }
-  for (const std::uint32_t corner : {0U, 1U, 2U, 0U, 2U, 3U}) indices.push_back(first + corner);
+  for (std::uint32_t i = chart.first_index; i < chart.first_index + chart.index_count; ++i) indices.push_back(first + mesh.indices[i]);
 }
 
-std::vector<std::uint32_t> quads_by_page(const std::vector<AtlasSlot>& slots) {
-  std::vector<std::uint32_t> quads(slots.size());
-  std::iota(quads.begin(), quads.end(), 0U);
-  std::stable_sort(quads.begin(), quads.end(), [&](std::uint32_t a, std::uint32_t b) { return slots[a].page < slots[b].page; });
-  return quads;
+std::vector<std::uint32_t> charts_by_page(const std::vector<AtlasSlot>& slots) {
+  std::vector<std::uint32_t> charts(slots.size());
+  std::iota(charts.begin(), charts.end(), 0U);
+  std::stable_sort(charts.begin(), charts.end(), [&](std::uint32_t a, std::uint32_t b) { return slots[a].page < slots[b].page; });
+  return charts;
 }
 
 }  // namespace
@@ -50,15 +45,17 @@ void ImpostorDrawer::add_impostor(const ImpostorSet& set, std::uint32_t id, Vert
   const auto first_piece = static_cast<std::uint32_t>(pieces_.size());
   first_piece_.push_back(first_piece);
   reference_viewpoints_.push_back(impostor.frame.reference_viewpoint);
+  const TexturedMesh mesh = textured_mesh(impostor);
   Box& bounds = bounds_.emplace_back();
-  for (const std::uint32_t quad : quads_by_page(slots)) {
-    const AtlasSlot& slot = slots[quad];
+  for (const ImpostorVertex& vertex : mesh.vertices) bounds.extend(impostor.frame.reference_viewpoint + vertex.offset);
+  for (const std::uint32_t chart : charts_by_page(slots)) {
+    const AtlasSlot& slot = slots[chart];
     if (pieces_.size() == first_piece || pieces_.back().page != slot.page)
       pieces_.push_back({.page = slot.page,
                          .impostor = id,
                          .range = {.vertex_array = 0, .base_vertex = 0, .first_index = indices.size(), .index_count = 0}});
-    append_quad(impostor, impostor.quads.at(quad), slot, set.pages.at(slot.page), bounds, vertices, indices);
-    pieces_.back().range.index_count += 6;
+    append_chart(mesh, mesh.charts.at(chart), slot, set.pages.at(slot.page), vertices, indices);
+    pieces_.back().range.index_count += static_cast<std::int32_t>(mesh.charts[chart].index_count);
   }
 }
 

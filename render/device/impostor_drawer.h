@@ -1,4 +1,5 @@
-// Draws baked impostors: textured quads with vertices relative to their reference viewpoint, one draw for each atlas page an impostor uses.
+// Draws baked impostors: textured triangles with vertices relative to their reference viewpoint, one draw for each atlas page an impostor
+// uses.
 #pragma once
 
 #include <cstdint>
@@ -19,12 +20,12 @@ class ImpostorDrawer {
 
   /// Sorted by page. Ids must be in range.
   void draw(BoundState& state, const Mat4& clip_from_world, std::span<const std::uint32_t> impostors) const;
-  /// World bounds of the quads; empty where there are none.
+  /// World bounds of what it shows; empty where that is nothing.
   [[nodiscard]] const Box& bounds(std::uint32_t impostor) const { return bounds_[impostor]; }
   [[nodiscard]] std::size_t count() const { return bounds_.size(); }
 
  private:
-  /// An impostor's quads on one page.
+  /// An impostor's triangles on one page.
   struct Piece {
     std::uint32_t page = 0;
     std::uint32_t impostor = 0;

@@ -17,7 +17,7 @@ constexpr int kDilationTexels = 4;
 
 struct Block {
   std::uint32_t impostor = 0;
-  std::uint32_t quad = 0;
+  std::uint32_t chart = 0;
   std::uint32_t width = 0;  // with gutters
   std::uint32_t height = 0;
   std::size_t first_byte = 0;  // in Impostor::texels
@@ -101,10 +101,10 @@ std::vector<Block> blocks_by_height(const std::vector<Impostor>& impostors, cons
   std::vector<Block> blocks;
   for (std::uint32_t i = 0; i < impostors.size(); ++i) {
     std::size_t first_byte = 0;
-    for (std::uint32_t q = 0; q < impostors[i].quads.size(); ++q) {
-      const Quad& quad = impostors[i].quads[q];
-      blocks.push_back({i, q, quad.width + 2 * options.gutter, quad.height + 2 * options.gutter, first_byte});
-      first_byte += 4 * std::size_t{quad.width} * quad.height;
+    const std::vector<Chart> charts = textured_mesh(impostors[i]).charts;
+    for (std::uint32_t c = 0; c < charts.size(); ++c) {
+      blocks.push_back({i, c, charts[c].width + 2 * options.gutter, charts[c].height + 2 * options.gutter, first_byte});
+      first_byte += 4 * std::size_t{charts[c].width} * charts[c].height;
     }
   }
   std::stable_sort(blocks.begin(), blocks.end(),
@@ -152,7 +152,7 @@ std::vector<Page> pack_pages(const std::vector<Block>& blocks, std::uint32_t max
   for (std::size_t i = 0; i < blocks.size(); ++i) {
     waiting[i] = i;
     if (std::max(blocks[i].width, blocks[i].height) > max_side)
-      throw Failure(ErrorWord::kInternal, "quad of impostor " + std::to_string(blocks[i].impostor) + " needs " +
+      throw Failure(ErrorWord::kInternal, "block of impostor " + std::to_string(blocks[i].impostor) + " needs " +
                                               std::to_string(blocks[i].width) + " x " + std::to_string(blocks[i].height) +
                                               " texels with gutters; a page has " + std::to_string(max_side) + " a side");
   }
@@ -224,7 +224,7 @@ void dilate_colour(const Window& window) {
 ImpostorSet pack_atlas(std::vector<Impostor> impostors, const AtlasOptions& options) {
   ImpostorSet set;
   set.impostors = std::move(impostors);
-  for (const Impostor& impostor : set.impostors) set.slots.emplace_back(impostor.quads.size());
+  for (const Impostor& impostor : set.impostors) set.slots.emplace_back(textured_mesh(impostor).charts.size());
   const std::vector<Block> blocks = blocks_by_height(set.impostors, options);
   const int gutter = static_cast<int>(options.gutter);
   for (const Page& page : pack_pages(blocks, options.max_side)) {
@@ -237,7 +237,7 @@ ImpostorSet pack_atlas(std::vector<Impostor> impostors, const AtlasOptions& opti
                           static_cast<int>(block.width), static_cast<int>(block.height)};
       copy_block(set.impostors[block.impostor].texels.data() + block.first_byte, block, gutter, window);
       dilate_colour(window);
-      set.slots[block.impostor][block.quad] = {number, placed.x + options.gutter, placed.y + options.gutter};
+      set.slots[block.impostor][block.chart] = {number, placed.x + options.gutter, placed.y + options.gutter};
     }
     set.pages.push_back(std::move(texture));
   }
@@ -246,7 +246,11 @@ ImpostorSet pack_atlas(std::vector<Impostor> impostors, const AtlasOptions& opti
 
 std::uint64_t texture_bytes(const Impostor& impostor, const AtlasOptions& options) {
   std::uint64_t texels = 0;
-  for (const Quad& quad : impostor.quads) texels += std::uint64_t{quad.width + 2 * options.gutter} * (quad.height + 2 * options.gutter);
+  const auto add = [&](const auto& block) {
+    texels += std::uint64_t{block.width + 2 * options.gutter} * (block.height + 2 * options.gutter);
+  };
+  std::for_each(impostor.quads.begin(), impostor.quads.end(), add);
+  std::for_each(impostor.mesh.charts.begin(), impostor.mesh.charts.end(), add);
   return 4 * texels;
 }
 

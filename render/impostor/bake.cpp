@@ -77,7 +77,7 @@ Impostor bake_layered(const Scene& scene, const TexturePyramids& textures, const
   if (!plan.possible)
     throw Failure(ErrorWord::kImpostorImpossible, "impostor of " + std::to_string(request.objects.size()) + " objects from object " +
                                                       std::to_string(request.objects.front()) + " on: " + plan.why_not);
-  Impostor impostor{request.objects, request.view_cell, plan.frame, plan.layers, {}, {}};
+  Impostor impostor{request.objects, request.view_cell, plan.frame, plan.layers, {}, {}, {}, Technique::kLayered};
   const auto images = record_layers(scene, textures, request.objects, impostor.frame, impostor.layers,
                                     quality.supercover ? Coverage::kClosed : Coverage::kCentre, budget,
                                     quality.leave_out ? Texturing::kWhereTextured : Texturing::kEverywhere);

@@ -1,12 +1,16 @@
-// Impostors as they are drawn: textured quads in the space of a reference viewpoint.
+// Impostors as they are drawn: textured triangles in the space of a reference viewpoint.
 //
-// An impostor stands for a set of objects, seen from anywhere in its view cell. Its frame has the reference viewpoint as origin and looks
+// An impostor stands for a set of objects, seen from anywhere in its view cell. Techniques differ in where its triangles lie: quads on
+// layers (thesis chapter 3), or a mesh through them (chapter 4). Whoever draws, packs, writes or measures takes textured_mesh(), which is
+// the same for all. Its frame has the reference viewpoint as origin and looks
 // along `forward` (= -axis of the shaft, or the box face's normal). A layer at distance A from the reference viewpoint is the rectangle { x
 // : dot(x - P, forward) = A }, whose texel (i, j) of `resolution` spans slopes [lo + i * step, lo + (i+1) * step] along right and [.. j ..]
 // along *down* (row 0 on top). Quads are rectangles of texels of one layer; opaque texels have alpha 255.
 #pragma once
 
 #include <cstdint>
+#include <optional>
+#include <string_view>
 #include <vector>
 
 #include "render/scene/scene.h"
@@ -47,19 +51,53 @@ struct ImpostorFrame {
   return frame.reference_viewpoint + distance_m * (frame.forward + slope_right * frame.right + slope_up * frame.up);
 }
 
-/// One baked layered impostor. `texels` holds the quads' RGBA8 blocks one after the other, rows from the top, straight alpha (0 or 255).
+/// A corner of triangles: where it is, and what it shows.
+struct ImpostorVertex {
+  Vec3 offset{0.0};  // metres from the reference viewpoint, world axes
+  Vec2 texel{0.0};   // in its chart's block, (0, 0) the upper left corner
+};
+
+/// A block of texels, one place in the atlas, and the triangles that show it.
+struct Chart {
+  std::uint32_t width = 0, height = 0;  // texels
+  std::uint32_t first_vertex = 0, vertex_count = 0;
+  std::uint32_t first_index = 0, index_count = 0;  // 3 a triangle, counted from first_vertex
+};
+
+struct TexturedMesh {
+  std::vector<Chart> charts;
+  std::vector<ImpostorVertex> vertices;
+  std::vector<std::uint32_t> indices;
+
+  [[nodiscard]] std::size_t triangle_count() const { return indices.size() / 3; }
+};
+
+enum class Technique : std::uint8_t { kLayered, kDepthMesh };
+/// "layered", "tdm": as the command line and placement.json say.
+[[nodiscard]] std::string_view technique_name(Technique technique);
+[[nodiscard]] std::optional<Technique> technique_named(std::string_view name);
+
+/// One baked impostor. `texels` holds the RGBA8 blocks of its quads or charts one after the other, rows from the top, straight alpha (0 or
+/// 255).
 struct Impostor {
   std::vector<std::uint32_t> objects;  // ascending ids
   ViewCell view_cell;
   ImpostorFrame frame;
   std::vector<Layer> layers;
-  std::vector<Quad> quads;
+  std::vector<Quad> quads;  // of a layered impostor; else `mesh`
   std::vector<std::uint8_t> texels;
+  TexturedMesh mesh{};
+  Technique technique = Technique::kLayered;
 
   [[nodiscard]] std::uint64_t texel_count() const { return texels.size() / 4; }
+  /// Shows nothing.
+  [[nodiscard]] bool empty() const { return quads.empty() && mesh.charts.empty(); }
 };
 
-/// Where a quad's block lies in the atlas: texel (x, y) of page `page`; gutters are around it.
+/// One chart for each quad (corners from the upper left, counter-clockwise as the viewer sees them), or the mesh itself.
+[[nodiscard]] TexturedMesh textured_mesh(const Impostor& impostor);
+
+/// Where a quad's or chart's block lies in the atlas: texel (x, y) of page `page`; gutters are around it.
 struct AtlasSlot {
   std::uint32_t page = 0;
   std::uint32_t x = 0, y = 0;
@@ -68,7 +106,7 @@ struct AtlasSlot {
 /// Impostors with their atlases: what the device draws and what the GLB holds.
 struct ImpostorSet {
   std::vector<Impostor> impostors;
-  std::vector<std::vector<AtlasSlot>> slots;  // slots[impostor][quad]
+  std::vector<std::vector<AtlasSlot>> slots;  // slots[impostor][quad or chart]
   std::vector<Texture> pages;                 // colour dilated into transparent texels; masked at alpha 0.5
 };
 

@@ -21,11 +21,12 @@ constexpr int kFloat = 5126, kUnsignedShort = 5123, kUnsignedInt = 5125, kArrayB
 constexpr int kNearest = 9728, kClampToEdge = 33071;
 enum BufferView : int { kPositions, kUvs, kIndices, kFirstImage };
 
-constexpr std::uint64_t kVerticesPerQuad = 4, kIndicesPerQuad = 6, kBytesPerVertex = 3 * sizeof(float) + 2 * sizeof(float);
-constexpr std::uint64_t kMostShortQuads = 0xFFFF / kVerticesPerQuad;  // 65535 itself is kept free: it restarts primitives
+constexpr std::uint64_t kBytesPerVertex = 3 * sizeof(float) + 2 * sizeof(float);
+constexpr std::uint64_t kMostShortVertices = 0xFFFF;  // index 65535 itself is kept free: it restarts primitives
 
-std::uint64_t bytes_per_index(std::uint64_t quads) {
-  return quads <= kMostShortQuads ? 2 : 4;
+/// One width for all of an impostor's primitives.
+std::uint64_t bytes_per_index(std::uint64_t vertices) {
+  return vertices <= kMostShortVertices ? 2 : 4;
 }
 
 template <class Value>
@@ -49,45 +50,50 @@ int add_accessor(Document& document, BufferView view, std::size_t offset, int co
   return static_cast<int>(document.accessors.size()) - 1;
 }
 
-/// Corners from the upper left, counter-clockwise as the viewer sees them.
-void append_quad(const Impostor& impostor, const Quad& quad, const AtlasSlot& slot, const Texture& page, Document& document, Box& bounds) {
-  for (const auto& [right, down] : {std::pair{0U, 0U}, {0U, 1U}, {1U, 1U}, {1U, 0U}}) {
-    const std::uint32_t dx = right * quad.width, dy = down * quad.height;
-    const Vec3 offset =
-        layer_point(impostor.frame, impostor.layers[quad.layer].distance_m, quad.x + dx, quad.y + dy) - impostor.frame.reference_viewpoint;
-    const glm::vec3 position(offset);
+void append_vertices(const TexturedMesh& mesh, const Chart& chart, const AtlasSlot& slot, const Texture& page, Document& document,
+                     Box& bounds) {
+  for (std::uint32_t i = chart.first_vertex; i < chart.first_vertex + chart.vertex_count; ++i) {
+    const ImpostorVertex& vertex = mesh.vertices[i];
+    const glm::vec3 position(vertex.offset);
     bounds.extend(Vec3(position));
     for (int axis = 0; axis < 3; ++axis) append(document.positions, position[axis]);
-    append(document.uvs, static_cast<float>(slot.x + dx) / static_cast<float>(page.width));
-    append(document.uvs, static_cast<float>(slot.y + dy) / static_cast<float>(page.height));
+    append(document.uvs, static_cast<float>(slot.x + vertex.texel.x) / static_cast<float>(page.width));
+    append(document.uvs, static_cast<float>(slot.y + vertex.texel.y) / static_cast<float>(page.height));
   }
 }
 
-void append_indices(std::uint64_t quads, std::uint64_t index_bytes, std::string& indices) {
-  for (std::uint64_t quad = 0; quad < quads; ++quad)
-    for (const std::uint64_t corner : {0, 1, 2, 0, 2, 3}) {
-      const std::uint64_t index = kVerticesPerQuad * quad + corner;
-      if (index_bytes == 2)
-        append(indices, static_cast<std::uint16_t>(index));
-      else
-        append(indices, static_cast<std::uint32_t>(index));
-    }
+void append_indices(const TexturedMesh& mesh, const Chart& chart, std::uint64_t first_vertex, std::uint64_t index_bytes,
+                    std::string& indices) {
+  for (std::uint32_t i = chart.first_index; i < chart.first_index + chart.index_count; ++i) {
+    const std::uint64_t index = first_vertex + mesh.indices[i];
+    if (index_bytes == 2)
+      append(indices, static_cast<std::uint16_t>(index));
+    else
+      append(indices, static_cast<std::uint32_t>(index));
+  }
 }
 
-/// The quads of one impostor that lie on one page.
-Json add_primitive(const Impostor& impostor, const std::vector<AtlasSlot>& slots, const std::vector<std::uint32_t>& quads,
+/// The charts of one impostor that lie on one page.
+Json add_primitive(const TexturedMesh& mesh, const std::vector<AtlasSlot>& slots, const std::vector<std::uint32_t>& charts,
                    const Texture& page, Document& document) {
-  const std::uint64_t index_bytes = bytes_per_index(impostor.quads.size()), vertices = kVerticesPerQuad * quads.size();
-  const int positions = add_accessor(document, kPositions, document.positions.size(), kFloat, vertices, "VEC3");
-  const int uvs = add_accessor(document, kUvs, document.uvs.size(), kFloat, vertices, "VEC2");
-  const int indices = add_accessor(document, kIndices, document.indices.size(), index_bytes == 2 ? kUnsignedShort : kUnsignedInt,
-                                   kIndicesPerQuad * quads.size(), "SCALAR");
+  const std::uint64_t index_bytes = bytes_per_index(mesh.vertices.size());
+  const std::size_t first_position = document.positions.size(), first_uv = document.uvs.size(), first_index = document.indices.size();
   Box bounds;
-  for (const std::uint32_t quad : quads) append_quad(impostor, impostor.quads[quad], slots[quad], page, document, bounds);
-  append_indices(quads.size(), index_bytes, document.indices);
+  std::uint64_t vertices = 0, indices = 0;
+  for (const std::uint32_t c : charts) {
+    const Chart& chart = mesh.charts[c];
+    append_vertices(mesh, chart, slots[c], page, document, bounds);
+    append_indices(mesh, chart, vertices, index_bytes, document.indices);
+    vertices += chart.vertex_count;
+    indices += chart.index_count;
+  }
+  pad(document.indices, '\0');
+  const int positions = add_accessor(document, kPositions, first_position, kFloat, vertices, "VEC3");
+  const int uvs = add_accessor(document, kUvs, first_uv, kFloat, vertices, "VEC2");
+  const int triangles = add_accessor(document, kIndices, first_index, index_bytes == 2 ? kUnsignedShort : kUnsignedInt, indices, "SCALAR");
   document.accessors[static_cast<std::size_t>(positions)]["min"] = {bounds.min.x, bounds.min.y, bounds.min.z};
   document.accessors[static_cast<std::size_t>(positions)]["max"] = {bounds.max.x, bounds.max.y, bounds.max.z};
-  return {{"attributes", {{"POSITION", positions}, {"TEXCOORD_0", uvs}}}, {"indices", indices}, {"material", slots[quads.front()].page}};
+  return {{"attributes", {{"POSITION", positions}, {"TEXCOORD_0", uvs}}}, {"indices", triangles}, {"material", slots[charts.front()].page}};
 }
 
 void add_node(const ImpostorSet& set, std::size_t id, Document& document) {
@@ -95,12 +101,13 @@ void add_node(const ImpostorSet& set, std::size_t id, Document& document) {
   const Vec3& viewpoint = impostor.frame.reference_viewpoint;
   const std::string name = "imp_" + std::to_string(id);
   Json node = {{"name", name}, {"translation", {viewpoint.x, viewpoint.y, viewpoint.z}}};
-  std::map<std::uint32_t, std::vector<std::uint32_t>> quads_of_page;
-  for (std::uint32_t quad = 0; quad < impostor.quads.size(); ++quad) quads_of_page[set.slots[id][quad].page].push_back(quad);
-  if (!quads_of_page.empty()) {
+  const TexturedMesh mesh = textured_mesh(impostor);
+  std::map<std::uint32_t, std::vector<std::uint32_t>> charts_of_page;
+  for (std::uint32_t chart = 0; chart < mesh.charts.size(); ++chart) charts_of_page[set.slots[id][chart].page].push_back(chart);
+  if (!charts_of_page.empty()) {
     Json primitives = Json::array();
-    for (const auto& [page, quads] : quads_of_page)
-      primitives.push_back(add_primitive(impostor, set.slots[id], quads, set.pages[page], document));
+    for (const auto& [page, charts] : charts_of_page)
+      primitives.push_back(add_primitive(mesh, set.slots[id], charts, set.pages[page], document));
     node["mesh"] = document.meshes.size();
     document.meshes.push_back({{"name", name}, {"primitives", std::move(primitives)}});
   }
@@ -126,7 +133,7 @@ void add_view(Json& views, std::string& binary, std::string_view bytes, int stri
   binary.append(bytes);
 }
 
-/// The sections that depend on there being any quads at all: glTF forbids empty arrays.
+/// The sections that depend on there being anything to show: glTF forbids empty arrays.
 void add_contents(const ImpostorSet& set, Document& document, Json& gltf, std::string& binary) {
   Json views = Json::array();
   add_view(views, binary, document.positions, 3 * sizeof(float), kArrayBuffer);
@@ -176,8 +183,8 @@ std::string encode_impostor_glb(const ImpostorSet& set) {
 }
 
 std::uint64_t geometry_bytes(const Impostor& impostor) {
-  const std::uint64_t quads = impostor.quads.size();
-  return quads * (kVerticesPerQuad * kBytesPerVertex + kIndicesPerQuad * bytes_per_index(quads));
+  const TexturedMesh mesh = textured_mesh(impostor);
+  return mesh.vertices.size() * kBytesPerVertex + mesh.indices.size() * bytes_per_index(mesh.vertices.size());
 }
 
 }  // namespace standin

@@ -23,8 +23,9 @@ PlacementImpostor describe(const BakedCandidate& baked, const TimeModel& model, 
   described.view_cell = impostor.view_cell;
   described.frame = impostor.frame;
   described.layers = impostor.layers;
-  described.quads = static_cast<std::uint32_t>(impostor.quads.size());
-  described.texels = impostor.texel_count();
+  described.technique = technique_name(impostor.technique);
+  described.quads = static_cast<std::uint32_t>(baked.cost.quads);
+  described.texels = static_cast<std::uint64_t>(baked.cost.texels);
   described.texture_bytes = texture_bytes(impostor);
   described.geometry_bytes = geometry_bytes(impostor);
   const Cost cost = model.cost(impostor_features_bound(baked.cost, camera));

@@ -42,6 +42,8 @@ class ImpostorReader {
   [[nodiscard]] Corner corner(const GlbTriangle& triangle, std::size_t vertex) const;
   [[nodiscard]] QuadInAtlas quad(const GlbTriangle* triangles) const;
   void copy_texels(const QuadInAtlas& quad, std::vector<std::uint8_t>& texels) const;
+  void read_quads(Impostor& impostor, std::vector<AtlasSlot>& slots) const;
+  void read_mesh(Impostor& impostor, std::vector<AtlasSlot>& slots) const;
 
   const PlacementImpostor& placed_;
   const GlbImpostor& shipped_;
@@ -109,16 +111,45 @@ void ImpostorReader::copy_texels(const QuadInAtlas& block, std::vector<std::uint
   }
 }
 
-void ImpostorReader::read(Impostor& impostor, std::vector<AtlasSlot>& slots) const {
-  if (shipped_.triangles.size() != kTrianglesPerQuad * placed_.quads)
-    broken(shipped_.node, "has " + std::to_string(shipped_.triangles.size()) + " triangles; the placement says " +
-                              std::to_string(placed_.quads) + " quads");
+/// A chart for each page, the whole of it.
+void ImpostorReader::read_mesh(Impostor& impostor, std::vector<AtlasSlot>& slots) const {
+  std::map<std::uint32_t, std::vector<const GlbTriangle*>> by_page;
+  for (const GlbTriangle& triangle : shipped_.triangles) by_page[triangle.page].push_back(&triangle);
+  TexturedMesh& mesh = impostor.mesh;
+  for (const auto& [page, triangles] : by_page) {
+    const auto count = static_cast<std::uint32_t>(3 * triangles.size());
+    mesh.charts.push_back({static_cast<std::uint32_t>(pages_[page].width), static_cast<std::uint32_t>(pages_[page].height),
+                           static_cast<std::uint32_t>(mesh.vertices.size()), count, static_cast<std::uint32_t>(mesh.indices.size()),
+                           count});
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const GlbTriangle& triangle = *triangles[i / 3];
+      mesh.vertices.push_back(
+          {shipped_.origin + triangle.offsets.at(i % 3) - placed_.frame.reference_viewpoint, triangle.texels.at(i % 3)});
+      mesh.indices.push_back(i);
+    }
+    slots.push_back({page, 0, 0});
+  }
+}
+
+void ImpostorReader::read_quads(Impostor& impostor, std::vector<AtlasSlot>& slots) const {
   for (std::size_t i = 0; i < shipped_.triangles.size(); i += kTrianglesPerQuad) {
     const QuadInAtlas block = quad(&shipped_.triangles[i]);
     impostor.quads.push_back(block.quad);
     slots.push_back(block.slot);
     copy_texels(block, impostor.texels);
   }
+}
+
+void ImpostorReader::read(Impostor& impostor, std::vector<AtlasSlot>& slots) const {
+  const bool layered = impostor.technique == Technique::kLayered;
+  if ((shipped_.triangles.size() + (layered ? 0 : 1)) / kTrianglesPerQuad != placed_.quads ||
+      (layered && shipped_.triangles.size() % kTrianglesPerQuad != 0))
+    broken(shipped_.node, "has " + std::to_string(shipped_.triangles.size()) + " triangles; the placement says " +
+                              std::to_string(placed_.quads) + " quads");
+  if (layered)
+    read_quads(impostor, slots);
+  else
+    read_mesh(impostor, slots);
 }
 
 }  // namespace
@@ -132,7 +163,9 @@ ImpostorSet shipped_impostors(const GlbQuads& glb, const Placement& placement) {
     const std::string node = "imp_" + std::to_string(id);
     const auto found = shipped_as.find(node);
     if (found == shipped_as.end()) broken(node, "is in the placement but not in the file");
-    set.impostors.push_back({placed.objects, placed.view_cell, placed.frame, placed.layers, {}, {}});
+    const auto technique = technique_named(placed.technique);
+    if (!technique) broken(node, "is made by the technique \"" + placed.technique + "\", which is not known");
+    set.impostors.push_back({placed.objects, placed.view_cell, placed.frame, placed.layers, {}, {}, {}, *technique});
     ImpostorReader(placed, *found->second, glb.pages).read(set.impostors.back(), set.slots.emplace_back());
   }
   for (const auto& page : glb.pages) set.pages.push_back({"atlas_" + std::to_string(set.pages.size()), page.width, page.height, page.rgba});

@@ -2,8 +2,9 @@
 // structures that wrote it.
 //
 // The placement says which objects, view cell, frame and layers belong to an impostor; its quads, their places in the atlas and the texels
-// come from the file alone. Corners are float offsets from the reference viewpoint: each is brought back to its layer and to integer texel
-// coordinates, and a corner that is not on a layer or not on a texel's corner is an error, not a rounding.
+// come from the file alone. A mesh is taken as it is. Corners of quads are float offsets from the reference viewpoint: each is brought back
+// to its layer and to integer texel coordinates, and a corner that is not on a layer or not on a texel's corner is an error, not a
+// rounding.
 #pragma once
 
 #include <string>

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
 #include "render/base/rng.h"
@@ -34,6 +35,29 @@ TEST(ConformalSteps, OfTooFewFramesStandAboveTheGreatestRatio) {
   const auto steps = conformal_steps({{1.0, 1.0}, {2.0, 4.0}, {3.0, 3.0}}, 0.99);
   ASSERT_EQ(steps.size(), 1U);
   EXPECT_DOUBLE_EQ(steps[0].factor, kTooFewFactor * 2.0);
+}
+
+// One of four scenes is off by a half more: pooled, the 90 % bound would leave half of its frames out.
+TEST(ConformalSteps, CoverEveryGroupByItself) {
+  Rng rng(5);
+  std::vector<HeldOut> frames;
+  for (std::uint32_t i = 0; i < 800; ++i) {
+    const double predicted_ms = std::pow(10.0, rng.uniform(-1.0, 2.0));
+    frames.push_back({predicted_ms, predicted_ms * rng.uniform(0.8, 1.2) * (i % 4 == 2 ? 1.5 : 1.0), i % 4});
+  }
+  TimeModel model;
+  model.bound_steps = conformal_steps(frames, 0.9);
+  std::array<int, 4> covered{};
+  for (const HeldOut& frame : frames) covered.at(frame.group) += frame.measured_ms <= model.bound_ms(frame.predicted_ms) ? 1 : 0;
+  for (const int count : covered) EXPECT_GE(count, 180);
+  EXPECT_LT(covered[2], 195) << "no further than it takes";
+}
+
+TEST(ConformalSteps, AGroupTooSmallForItsOwnQuantileCountsByItsWorst) {
+  std::vector<HeldOut> frames(200, HeldOut{10.0, 10.0, 0});
+  frames.push_back({10.0, 20.0, 1});
+  const auto steps = conformal_steps(frames, 0.99);
+  EXPECT_DOUBLE_EQ(steps.back().factor, kTooFewFactor * 2.0);
 }
 
 TEST(ConformalSteps, SayHowManyFramesAreEnough) {

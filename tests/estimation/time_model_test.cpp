@@ -40,8 +40,6 @@ TEST(TimeModel, CapsThePixelsOfOriginalsByTheCostliestKind) {
   EXPECT_DOUBLE_EQ(model.most_pixel_ms(std::array{Term::kPlainPixels, Term::kTexturedPixels}, 10.0), 2.0);
   EXPECT_DOUBLE_EQ(model.most_pixel_ms(std::array{Term::kPlainPixels}, 10.0), 1.0);
   EXPECT_DOUBLE_EQ(model.most_pixel_ms({}, 10.0), 0.0);
-  model.milliseconds_per_unit[static_cast<std::size_t>(Term::kMaskedPixels)] = 0.15;
-  EXPECT_DOUBLE_EQ(model.most_pixel_ms(std::array{Term::kTexturedPixels, Term::kMaskedPixels}, 10.0), 3.5) << "both, where both occur";
   Features features;
   features[Term::kImpostorPixels] = 100.0;
   EXPECT_DOUBLE_EQ(model.cost(features).fixed_ms, 25.0);
