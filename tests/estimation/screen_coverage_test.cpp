@@ -55,7 +55,7 @@ TEST(ScreenCoverage, MaskedPixelsFillACellToo) {
 TEST(ScreenCoverage, OpaquePixelsShareTheRoomThatMaskedOnesLeave) {
   ScreenCoverage coverage(kCamera);
   coverage.add(PixelKind::kMasked, 16.0, 16.0, 5.0, 900.0);
-  for (int wall = 0; wall < 2; ++wall) coverage.add(PixelKind::kPlain, 16.0, 16.0, 20.0, kCellPixels);
+  for (int half_wall = 0; half_wall < 4; ++half_wall) coverage.add(PixelKind::kPlain, 16.0, 16.0, 20.0, 0.5 * kCellPixels);
   EXPECT_NEAR(coverage.passed()[kMasked], 900.0, 1e-9);
   EXPECT_NEAR(coverage.passed()[kPlain], kOverdraw * kCellPixels - 900.0, 1e-9);
 }
