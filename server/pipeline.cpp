@@ -1,5 +1,6 @@
 #include "server/pipeline.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <numeric>
@@ -41,7 +42,7 @@ struct Surveyed {
   World world;
   Target target;
   CandidateOptions candidate_options;
-  SizeModel sizes;
+  SizeModels sizes;
   ReachSummary reach;
   Survey survey;
 };
@@ -65,16 +66,26 @@ Subdivision problem_views(const World& world, const TimeModel& model, double pre
 }
 
 // What an impostor will weigh, from real bakes of this scene's own candidates (thesis 5.8.1).
-SizeModel fit_sizes(const Surveyed& job, const Subdivision& whole, const JobSpec& spec, const WorkBudget& budget) {
+SizeModels fit_sizes(const Surveyed& job, const Subdivision& whole, const JobSpec& spec, const WorkBudget& budget) {
   const World& world = job.world;
   const TimeModel& model = job.target.model;
-  if (spec.size_bakes == 0) return default_size_model();
+  SizeModels sizes;
+  sizes.layered = default_size_model();
+  if (spec.techniques != "layered") sizes.depth_mesh = default_size_model(Technique::kDepthMesh);
+  if (spec.size_bakes == 0) return sizes;
   constexpr double kProbeShare = 0.6;  // enough slow regions for typical candidates
   const Subdivision probe = problem_views(world, model, kProbeShare * whole.worst_predicted_ms, budget);
-  const CandidateSet set = generate_candidates(world.scene, world.hierarchy, probe, model, default_size_model(), world.camera,
-                                               world.quality, job.candidate_options, budget);
-  if (set.candidates.empty()) return default_size_model();
-  return fit_size_model(world.scene, set.candidates, world.camera, world.quality, spec.size_bakes, spec.seed, world.threads, budget);
+  CandidateSet set =
+      generate_candidates(world.scene, world.hierarchy, probe, model, sizes, world.camera, world.quality, job.candidate_options, budget);
+  const auto meshes = std::stable_partition(set.candidates.begin(), set.candidates.end(),
+                                            [](const Candidate& candidate) { return candidate.technique == Technique::kLayered; });
+  const auto fit = [&](auto first, auto last) {
+    const std::vector<Candidate> of_one(first, last);
+    return fit_size_model(world.scene, of_one, world.camera, world.quality, spec.size_bakes, spec.seed, world.threads, budget);
+  };
+  if (meshes != set.candidates.end()) sizes.depth_mesh = fit(meshes, set.candidates.end());
+  if (meshes != set.candidates.begin()) sizes.layered = fit(set.candidates.begin(), meshes);
+  return sizes;
 }
 
 // What impostors could do for the worst views; where the placement at hand has no problem view, nobody asks.
@@ -176,7 +187,7 @@ json common_metrics(const Surveyed& job, const StageClock& clock) {
             {"coverage", job.target.model.coverage},
             {"median_error", job.target.median_error},
             {"p90_error", job.target.p90_error}}},
-          {"size_model", {{"bakes", job.sizes.bakes}, {"median_error", job.sizes.median_error}}},
+          {"size_model", {{"bakes", job.sizes.layered.bakes}, {"median_error", job.sizes.layered.median_error}}},
           {"survey", survey_json(job)},
           {"stages_s", clock.seconds()},
           {"left_out", clock.left_out()},

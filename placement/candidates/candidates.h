@@ -9,6 +9,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -46,6 +47,16 @@ struct SizeModel {
   std::uint32_t bakes = 0;
 };
 
+/// Per technique. What a layered impostor can stand for may be offered as a depth mesh as well.
+struct SizeModels {
+  SizeModels() = default;
+  SizeModels(const SizeModel& of_layered) : layered(of_layered) {}  // NOLINT: the layered technique alone is the plain case
+  SizeModel layered;
+  std::optional<SizeModel> depth_mesh;  // nothing: not offered
+
+  [[nodiscard]] const SizeModel& of(Technique technique) const { return technique == Technique::kDepthMesh ? *depth_mesh : layered; }
+};
+
 struct Candidate {
   std::uint32_t node = 0;  // of the hierarchy
   ViewCell view_cell;
@@ -53,6 +64,7 @@ struct Candidate {
   std::vector<std::uint32_t> objects;  // of the node, visible from a served cell, ascending
   double bytes = 0.0;                  // estimated texture bytes
   ImpostorCost cost;                   // estimated, without margins
+  Technique technique = Technique::kLayered;
 };
 
 struct CandidateSet {
@@ -64,25 +76,25 @@ struct CandidateSet {
 };
 
 [[nodiscard]] CandidateSet generate_candidates(const Scene& scene, const Hierarchy& hierarchy, const Subdivision& subdivision,
-                                               const TimeModel& model, const SizeModel& sizes, const Camera& camera,
+                                               const TimeModel& model, const SizeModels& sizes, const Camera& camera,
                                                const BakeQuality& quality, const CandidateOptions& options, const WorkBudget& budget);
 
-/// Bakes a spread of `count` candidates and fits the size model (deterministic).
+/// Bakes a spread of `count` of the candidates, all of one technique, and fits its size model (deterministic).
 [[nodiscard]] SizeModel fit_size_model(const Scene& scene, const std::vector<Candidate>& candidates, const Camera& camera,
                                        const BakeQuality& quality, std::uint32_t count, std::uint64_t seed, int threads,
                                        const WorkBudget& budget);
 /// A size model to start from, before anything was baked: fitted on other scenes.
-[[nodiscard]] SizeModel default_size_model();
+[[nodiscard]] SizeModel default_size_model(Technique technique = Technique::kLayered);
 
 /// Lowest predicted time each CPV can be brought to by any disjoint candidates (tree DP: V(node) = max(best own gain, sum of V(children))),
-/// each candidate a shaft tight around the CPV's own cell. One value per CPV; `blockers` names the objects that make up most of what is
+/// each candidate layered and a shaft tight around the CPV's own cell. One value per CPV; `blockers` names the objects that make up most of what is
 /// left.
 struct Reach {
   std::vector<double> predicted_ms;                  // per CPV
   std::vector<std::vector<std::uint32_t>> blockers;  // per CPV, at most 5 objects, largest first
 };
 [[nodiscard]] Reach reachable_times(const Scene& scene, const Hierarchy& hierarchy, const Subdivision& subdivision, const TimeModel& model,
-                                    const SizeModel& sizes, const Camera& camera, const BakeQuality& quality,
+                                    const SizeModels& sizes, const Camera& camera, const BakeQuality& quality,
                                     const CandidateOptions& options, const WorkBudget& budget);
 
 }  // namespace standin

@@ -40,6 +40,19 @@ bool can_be_baked(const DraftContext& context, const Box& object_bounds, std::sp
          plan_impostor(object_bounds, points, view_cell, context.camera, context.quality).possible;
 }
 
+/// Bytes and drawing cost by the technique's size model.
+void weigh(const DraftContext& context, Draft& draft) {
+  const SizeModel& sizes = context.sizes.of(draft.candidate.technique);
+  const SizeEstimate size = estimate_size(sizes, draft.input);
+  draft.candidate.bytes = size.bytes;
+  // Texels are chosen so that the nearest layer is not magnified from the nearest point of the view cell.
+  draft.candidate.cost = {size.quads, size.texels, context.quality.texel_scale / context.camera.focal_px()};
+  ImpostorCost cautious = draft.candidate.cost;
+  cautious.quads *= sizes.quads_margin;
+  cautious.texels *= sizes.texels_margin;
+  draft.cost = context.model.cost(impostor_features_bound(cautious, context.camera));
+}
+
 }  // namespace
 
 std::optional<Draft> draft_candidate(const DraftContext& context, std::uint32_t node, const CellSet& cells) {
@@ -52,15 +65,19 @@ std::optional<Draft> draft_candidate(const DraftContext& context, std::uint32_t 
   const ImpostorSketch sketch = sketch_impostor(bounds, points, *view_cell, context.camera, context.quality);
   if (!can_be_baked(context, bounds, points, *view_cell, sketch)) return std::nullopt;
 
-  const SizeEstimate size = estimate_size(context.sizes, size_input(context.scene, context.outlines, objects, sketch));
-  Draft draft;
-  draft.candidate = {node, *view_cell, cells, std::move(objects), size.bytes, {}};
-  // Texels are chosen so that the nearest layer is not magnified from the nearest point of the view cell.
-  draft.candidate.cost = {size.quads, size.texels, context.quality.texel_scale / context.camera.focal_px()};
-  ImpostorCost cautious = draft.candidate.cost;
-  cautious.quads *= context.sizes.quads_margin;
-  cautious.texels *= context.sizes.texels_margin;
-  draft.cost = context.model.cost(impostor_features_bound(cautious, context.camera));
+  Draft draft{{node, *view_cell, cells, std::move(objects), 0.0, {}, Technique::kLayered}, {}, {}};
+  draft.input = size_input(context.scene, context.outlines, draft.candidate.objects, sketch);
+  weigh(context, draft);
+  return draft;
+}
+
+std::optional<Draft> as_depth_mesh(const DraftContext& context, const Draft& layered) {
+  if (!context.sizes.depth_mesh || !(layered.input.layers > 1.5)) return std::nullopt;
+  Draft draft = layered;
+  draft.candidate.technique = Technique::kDepthMesh;
+  weigh(context, draft);
+  const bool faster = draft.cost.fixed_ms < layered.cost.fixed_ms;
+  if (draft.candidate.bytes >= layered.candidate.bytes && !faster) return std::nullopt;
   return draft;
 }
 

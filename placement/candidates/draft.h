@@ -11,6 +11,7 @@
 #include "placement/candidates/cell_index.h"
 #include "placement/candidates/cell_sets.h"
 #include "placement/candidates/outlines.h"
+#include "placement/candidates/size_model.h"
 
 namespace standin {
 
@@ -22,7 +23,7 @@ struct DraftContext {
   const CellIndex& index;
   const ObjectOutlines& outlines;
   const TimeModel& model;
-  const SizeModel& sizes;
+  const SizeModels& sizes;
   const Camera& camera;
   const BakeQuality& quality;
   CellShape shape;
@@ -31,6 +32,7 @@ struct DraftContext {
 struct Draft {
   Candidate candidate;
   Cost cost;  // of drawing it, with the size model's margins
+  SizeInput input;
 };
 
 /// Predicted milliseconds in the linear form of a CPV.
@@ -40,6 +42,10 @@ struct Draft {
 
 /// `cells`: ascending, at least one, each sees some object of the node. Nothing when no impostor is possible.
 [[nodiscard]] std::optional<Draft> draft_candidate(const DraftContext& context, std::uint32_t node, const CellSet& cells);
+
+/// The same cluster and view cell as a depth mesh. Nothing where none is offered, where one layer is enough, or where it would be neither
+/// smaller nor faster to draw.
+[[nodiscard]] std::optional<Draft> as_depth_mesh(const DraftContext& context, const Draft& layered);
 
 /// Whether all objects visible from the cells lie in one child of the node: then the child's candidate is the same.
 [[nodiscard]] bool belongs_to_child(const DraftContext& context, std::uint32_t node, const CellSet& cells);

@@ -10,6 +10,7 @@
 #include "render/base/parallel.h"
 #include "render/base/rng.h"
 #include "render/impostor/atlas.h"
+#include "render/impostor/technique.h"
 #include "render/impostor/texture_pyramid.h"
 
 namespace standin {
@@ -38,11 +39,12 @@ std::optional<SizeSample> bake_size_sample(const Scene& scene, const ObjectOutli
   const ImpostorSketch sketch = sketch_impostor(bounds, outlines.of(candidate.objects), candidate.view_cell, camera, quality);
   if (!std::isfinite(sketch.layers)) return std::nullopt;
   try {
-    const Impostor impostor = bake_layered(scene, textures, {candidate.objects, candidate.view_cell}, camera, quality, budget);
+    const BakeRequest request{candidate.objects, candidate.view_cell};
+    const Impostor impostor = bake_impostor(scene, textures, candidate.technique, request, camera, quality, budget);
     if (impostor.empty()) return std::nullopt;
+    const ImpostorCost cost = impostor_cost(impostor);
     return SizeSample{size_input(scene, outlines, candidate.objects, sketch),
-                      {static_cast<double>(texture_bytes(impostor)), static_cast<double>(impostor.texel_count()),
-                       static_cast<double>(impostor.quads.size())}};
+                      {static_cast<double>(texture_bytes(impostor)), cost.texels, cost.quads}};
   } catch (const Failure& failure) {
     if (failure.word() != ErrorWord::kImpostorImpossible) throw;
     return std::nullopt;
@@ -61,7 +63,7 @@ SizeModel fit_size_model(const Scene& scene, const std::vector<Candidate>& candi
   std::vector<SizeSample> samples;
   for (const auto& sample : baked)
     if (sample) samples.push_back(*sample);
-  return fit_sizes(samples);
+  return fit_sizes(samples, default_size_model(candidates.empty() ? Technique::kLayered : candidates.front().technique));
 }
 
 }  // namespace standin

@@ -45,7 +45,7 @@ class NodeCandidates {
         continue;
       }
       useful_.push_back(std::move(useful));
-      keep(std::move(draft->candidate));
+      keep(std::move(*draft));
     }
   }
 
@@ -82,14 +82,22 @@ class NodeCandidates {
     else if (!gains_anywhere(cells, draft->cost))
       ++set_.hopeless;
     else
-      keep(std::move(draft->candidate));
+      keep(std::move(*draft));
   }
 
-  void keep(Candidate candidate) {
-    if (belongs_to_child(context_, node_, candidate.cells))
+  void keep(Draft layered) {
+    if (belongs_to_child(context_, node_, layered.candidate.cells)) {
       ++set_.duplicates;
+      return;
+    }
+    std::optional<Draft> mesh = as_depth_mesh(context_, layered);
+    set_.candidates.push_back(std::move(layered.candidate));
+    if (!mesh) return;
+    ++set_.generated;
+    if (gains_anywhere(mesh->candidate.cells, mesh->cost))
+      set_.candidates.push_back(std::move(mesh->candidate));
     else
-      set_.candidates.push_back(std::move(candidate));
+      ++set_.hopeless;
   }
 
   [[nodiscard]] bool gains(const UsefulCell& useful, const Cost& cost) const {
@@ -117,7 +125,7 @@ class NodeCandidates {
 }  // namespace
 
 CandidateSet generate_candidates(const Scene& scene, const Hierarchy& hierarchy, const Subdivision& subdivision, const TimeModel& model,
-                                 const SizeModel& sizes, const Camera& camera, const BakeQuality& quality, const CandidateOptions& options,
+                                 const SizeModels& sizes, const Camera& camera, const BakeQuality& quality, const CandidateOptions& options,
                                  const WorkBudget& budget) {
   const CellIndex index(hierarchy, subdivision);
   const DirectionGrid grid(options.direction_step_deg, options.every_direction);

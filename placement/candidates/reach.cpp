@@ -96,7 +96,7 @@ class CellReach {
 }  // namespace
 
 Reach reachable_times(const Scene& scene, const Hierarchy& hierarchy, const Subdivision& subdivision, const TimeModel& model,
-                      const SizeModel& sizes, const Camera& camera, const BakeQuality& quality, const CandidateOptions& options,
+                      const SizeModels& sizes, const Camera& camera, const BakeQuality& quality, const CandidateOptions& options,
                       const WorkBudget& budget) {
   const CellIndex index(hierarchy, subdivision);
   const ObjectOutlines outlines(scene);

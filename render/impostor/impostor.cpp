@@ -6,7 +6,7 @@
 namespace standin {
 namespace {
 
-constexpr std::array<std::string_view, 2> kNames = {"layered", "tdm"};
+constexpr std::array<std::string_view, kTechniqueCount> kNames = {"layered", "tdm"};
 
 void append_quad(const Impostor& impostor, const Quad& quad, TexturedMesh& mesh) {
   const auto first_vertex = static_cast<std::uint32_t>(mesh.vertices.size());

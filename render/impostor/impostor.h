@@ -73,6 +73,7 @@ struct TexturedMesh {
 };
 
 enum class Technique : std::uint8_t { kLayered, kDepthMesh };
+inline constexpr std::size_t kTechniqueCount = 2;
 /// "layered", "tdm": as the command line and placement.json say.
 [[nodiscard]] std::string_view technique_name(Technique technique);
 [[nodiscard]] std::optional<Technique> technique_named(std::string_view name);

@@ -6,7 +6,7 @@
 #include "render/base/error.h"
 #include "render/base/parallel.h"
 #include "render/impostor/atlas.h"
-#include "render/impostor/bake.h"
+#include "render/impostor/technique.h"
 
 namespace standin {
 namespace {
@@ -42,7 +42,8 @@ double Baker::bytes(const std::vector<std::uint32_t>& chosen) const {
 // Nothing where the sketch was too hopeful: the recorded vertices need more layers than allowed.
 std::optional<Impostor> Baker::try_bake(const Candidate& candidate, const WorkBudget& budget) const {
   try {
-    return bake_layered(world_.scene, textures_, {candidate.objects, candidate.view_cell}, world_.camera, world_.quality, budget);
+    return bake_impostor(world_.scene, textures_, candidate.technique, {candidate.objects, candidate.view_cell}, world_.camera,
+                         world_.quality, budget);
   } catch (const Failure& failure) {
     if (failure.word() != ErrorWord::kImpostorImpossible) throw;
     return std::nullopt;

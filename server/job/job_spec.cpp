@@ -128,7 +128,7 @@ std::vector<SpecField> make_fields() {
       field("candidates.direction_step_deg", "--direction-step-deg", &JobSpec::direction_step_deg, "step of shaft directions in degrees",
             between(1.0, 90.0)),
       field("candidates.cell_shape", "--cell-shape", &JobSpec::cell_shape, "shape of view cells", one_of({"shaft", "box"})),
-      field("impostors.techniques", "--techniques", &JobSpec::techniques, "impostor techniques", one_of({"layered"})),
+      field("impostors.techniques", "--techniques", &JobSpec::techniques, "impostor techniques a candidate may be made with, whichever needs least memory", one_of({"layered", "layered,tdm"})),
       field("impostors.alpha_scale", "--alpha-scale", &JobSpec::alpha_scale, "parallax limit in centre pixels", between(0.1, 16.0)),
       field("impostors.texel_scale", "--texel-scale", &JobSpec::texel_scale, "texel size in centre pixels", between(0.1, 16.0)),
       field("impostors.max_layers", "--max-layers", &JobSpec::max_layers, "layers an impostor may have; 0: 200 for walk, 400 for orbit",

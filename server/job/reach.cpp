@@ -43,7 +43,7 @@ ReachSummary without_reach(const TimeModel& model, Subdivision problem) {
   return summary;
 }
 
-ReachSummary summarise_reach(const World& world, const TimeModel& model, const Subdivision& whole, const SizeModel& sizes,
+ReachSummary summarise_reach(const World& world, const TimeModel& model, const Subdivision& whole, const SizeModels& sizes,
                              const CandidateOptions& options, const WorkBudget& budget) {
   ReachSummary summary;
   summary.known = true;

@@ -28,7 +28,7 @@ struct ReachSummary {
 };
 
 /// `whole`: the regions of the view space, without a budget.
-[[nodiscard]] ReachSummary summarise_reach(const World& world, const TimeModel& model, const Subdivision& whole, const SizeModel& sizes,
+[[nodiscard]] ReachSummary summarise_reach(const World& world, const TimeModel& model, const Subdivision& whole, const SizeModels& sizes,
                                            const CandidateOptions& options, const WorkBudget& budget);
 /// The same where nobody asks how low the budget may go, since `problem` has no problem view: worst_bound_ms alone is known.
 [[nodiscard]] ReachSummary without_reach(const TimeModel& model, Subdivision problem);

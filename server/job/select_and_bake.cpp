@@ -55,18 +55,40 @@ double pixels_of(const ImpostorCost& cost) {
   return cost.texels * cost.texel_angle_rad * cost.texel_angle_rad;
 }
 
+// One for each technique.
+using Corrections = std::array<Correction, kTechniqueCount>;
+
+Correction& of(Corrections& corrections, Technique technique) {
+  return corrections.at(static_cast<std::size_t>(technique));
+}
+
 // `unknown`: where there is nothing to compare.
-Correction compare(const std::vector<Candidate>& estimated, const std::vector<std::optional<BakedSize>>& real, double cost_share,
-                   const Correction& unknown) {
+Correction compare(const std::vector<Candidate>& estimated, const std::vector<std::optional<BakedSize>>& real, Technique technique,
+                   double cost_share, const Correction& unknown) {
   std::vector<double> bytes, quads, texels;
   for (std::size_t id = 0; id < estimated.size(); ++id) {
-    if (!real[id] || !real[id]->possible || !(pixels_of(estimated[id].cost) > 0.0) || !(estimated[id].cost.quads > 0.0)) continue;
+    if (estimated[id].technique != technique || !real[id] || !real[id]->possible || !(pixels_of(estimated[id].cost) > 0.0) || !(estimated[id].cost.quads > 0.0)) continue;
     bytes.push_back(real[id]->bytes / estimated[id].bytes);
     quads.push_back(real[id]->cost.quads / estimated[id].cost.quads);
     texels.push_back(pixels_of(real[id]->cost) / pixels_of(estimated[id].cost));
   }
   if (bytes.empty()) return unknown;
   return {quantile(bytes, kBytesShare), quantile(quads, cost_share), quantile(texels, cost_share)};
+}
+
+Corrections compare_all(const std::vector<Candidate>& estimated, const std::vector<std::optional<BakedSize>>& real, double cost_share,
+                        const Corrections& unknown) {
+  Corrections corrections;
+  for (std::size_t t = 0; t < kTechniqueCount; ++t)
+    corrections[t] = compare(estimated, real, static_cast<Technique>(t), cost_share, unknown[t]);
+  return corrections;
+}
+
+Corrections margins_of(const SizeModels& sizes) {
+  Corrections margins;
+  of(margins, Technique::kLayered) = {1.0, sizes.layered.quads_margin, sizes.layered.texels_margin};
+  if (sizes.depth_mesh) of(margins, Technique::kDepthMesh) = {1.0, sizes.depth_mesh->quads_margin, sizes.depth_mesh->texels_margin};
+  return margins;
 }
 
 ImpostorCost corrected(const ImpostorCost& cost, const Correction& by) {
@@ -114,7 +136,7 @@ void collect(SelectedImpostors& result, Baker& baker) {
 // The rounds of one job.
 class Rounds {
  public:
-  Rounds(const World& world, const Subdivision& subdivision, const CandidateSet& candidates, const SizeModel& sizes, const TimeModel& model,
+  Rounds(const World& world, const Subdivision& subdivision, const CandidateSet& candidates, const SizeModels& sizes, const TimeModel& model,
          double budget_ms, const WorkBudget& budget)
       : world_(world),
         subdivision_(subdivision),
@@ -122,7 +144,7 @@ class Rounds {
         model_(model),
         budget_ms_(budget_ms),
         budget_(budget),
-        margins_{1.0, sizes.quads_margin, sizes.texels_margin},
+        margins_(margins_of(sizes)),
         baker_(world, candidates.candidates) {
     result_.atlas_pages = 1;
     result_.page_switch_ms = page_switches_ms(model_, 1);
@@ -151,7 +173,7 @@ class Rounds {
     const bool settled = outcome.baked == 0 && outcome.short_cpvs == 0;
     const bool done = settled && (result_.selection.summary.unmet.empty() || boldness_ == kBoldCostShares.size());
     if (settled && !done) ++boldness_;
-    update(compare(candidates_.candidates, baker_.sizes(), cost_share(), boldness_ > 0 ? Correction{} : margins_));
+    update(compare_all(candidates_.candidates, baker_.sizes(), cost_share(), boldness_ > 0 ? Corrections{} : margins_));
     return done || (boldness_ > 0 && enough_boldness(outcome.baked));
   }
 
@@ -161,7 +183,7 @@ class Rounds {
   void select_among_baked(const JobSpec& spec) {
     std::vector<Shortfall> short_of_all = std::move(result_.selection.summary.unmet);
     do {
-      update(Correction{});
+      update({});
       for (std::uint32_t id = 0; id < candidates_.candidates.size(); ++id)
         if (!baker_.sizes()[id]) rule_out(problem_, id);
       select(spec);
@@ -174,7 +196,7 @@ class Rounds {
     SelectionSummary& summary = result_.selection.summary;
     summary.bytes = baker_.bytes(result_.selection.chosen);
     if (bound_iterations > 0) {
-      update(Correction{});
+      update({});
       for (const Shortfall& shortfall : summary.unmet)
         problem_.deficit[shortfall.cpv] = 0.0;  // as the selection, it spends nothing on them
       set_least_bytes();
@@ -195,7 +217,10 @@ class Rounds {
     parallel_for(candidates_.candidates.size(), world_.threads, budget_, [&](std::size_t id) {
       if (baker_.sizes()[id]) return;
       const Candidate& candidate = candidates_.candidates[id];
-      const double least = bound.texture_bytes(candidate.objects, candidate.view_cell, world_.camera, world_.quality);
+      // Nothing is proven of a mesh's size.
+      const double least = candidate.technique == Technique::kLayered
+                               ? bound.texture_bytes(candidate.objects, candidate.view_cell, world_.camera, world_.quality)
+                               : 0.0;
       problem_.bytes[id] = std::max(kNothingProven, least);
     });
   }
@@ -229,12 +254,13 @@ class Rounds {
   }
 
   // The same problem with what is baked as it is, and the rest as estimated with a correction.
-  void update(const Correction& correction) {
+  void update(Corrections corrections) {
     result_.page_switch_ms = page_switches_ms(model_, result_.atlas_pages);
     set_budget(problem_, subdivision_, limits());
     for (std::uint32_t id = 0; id < candidates_.candidates.size(); ++id) {
       const Candidate& estimate = candidates_.candidates[id];
       const auto& real = baker_.sizes()[id];
+      const Correction& correction = of(corrections, estimate.technique);
       if (!real)
         set_impostor(problem_, id, correction.bytes * estimate.bytes, corrected(estimate.cost, correction), model_, world_.camera);
       else if (real->possible)
@@ -250,7 +276,7 @@ class Rounds {
   const TimeModel& model_;
   double budget_ms_;
   const WorkBudget& budget_;
-  const Correction margins_;
+  const Corrections margins_;
   Baker baker_;
   SelectionProblem problem_;
   std::size_t boldness_ = 0;  // how often caution was given up
@@ -261,7 +287,7 @@ class Rounds {
 }  // namespace
 
 SelectedImpostors select_and_bake(const World& world, const Subdivision& subdivision, const CandidateSet& candidates,
-                                  const SizeModel& sizes, const TimeModel& model, double budget_ms, const JobSpec& spec, StageClock& clock,
+                                  const SizeModels& sizes, const TimeModel& model, double budget_ms, const JobSpec& spec, StageClock& clock,
                                   const WorkBudget& budget) {
   auto rounds = clock.run("select", [&] { return Rounds(world, subdivision, candidates, sizes, model, budget_ms, budget); });
   for (int round = 0; round < spec.bake_rounds; ++round) {

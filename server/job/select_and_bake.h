@@ -37,7 +37,7 @@ struct SelectedImpostors {
 };
 
 [[nodiscard]] SelectedImpostors select_and_bake(const World& world, const Subdivision& subdivision, const CandidateSet& candidates,
-                                                const SizeModel& sizes, const TimeModel& model, double budget_ms, const JobSpec& spec,
+                                                const SizeModels& sizes, const TimeModel& model, double budget_ms, const JobSpec& spec,
                                                 StageClock& clock, const WorkBudget& budget);
 
 }  // namespace standin
