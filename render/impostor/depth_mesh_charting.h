@@ -14,7 +14,8 @@ struct ChartDraft {
   std::vector<TriangleCorners> triangles;  // indices into `vertices`
 };
 
-/// Every triangle is in one chart. Charts grow over edges, triangle by triangle from the first; no texel centre is in two triangles of one.
+/// Every triangle is in one chart. Charts grow over edges as long as that saves texels; no texel centre is in two triangles
+/// of one.
 [[nodiscard]] std::vector<ChartDraft> charts_of(const SimplifiedMesh& mesh, double texels_per_voxel, std::uint32_t max_side);
 
 }  // namespace standin

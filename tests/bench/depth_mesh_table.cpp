@@ -1,6 +1,6 @@
 // Textured depth meshes against layered impostors, after thesis table 4.1 (depth_mesh_table.md holds results).
 //
-//     depth_mesh_table SCENE [--enlargement 1.5] [--ring 2] [--alpha 1] [--distances 90,110,...]
+//     depth_mesh_table SCENE [--enlargement 1.5] [--ring 2] [--alpha 1] [--scale 1] [--distances 90,110,...]
 //
 // The whole scene as one impostor, for a cubic view cell of 100 m before it in +z, at several distances.
 #include <cstdio>
@@ -23,6 +23,7 @@ struct Arguments {
   std::string scene;
   BakeQuality quality;
   DepthMeshQuality mesh;
+  double scale = 1.0;  // of the scene about its origin
   std::vector<double> distances_m{90, 110, 140, 180, 250, 500, 1000};
 };
 
@@ -39,6 +40,7 @@ Arguments parse(int argc, char** argv) {
     if (flag == "--enlargement") arguments.mesh.enlargement = std::stod(value);
     if (flag == "--ring") arguments.mesh.ring = std::stoi(value);
     if (flag == "--alpha") arguments.quality.alpha_scale = std::stod(value);
+    if (flag == "--scale") arguments.scale = std::stod(value);
     if (flag == "--distances") {
       arguments.distances_m.clear();
       std::istringstream list(value);
@@ -79,7 +81,10 @@ void print_row(const Scene& scene, const TexturePyramids& textures, const Argume
 int main(int argc, char** argv) {
   try {
     const auto arguments = standin::parse(argc, argv);
-    const standin::Scene scene = standin::load_scene(arguments.scene);
+    standin::Scene scene = standin::load_scene(arguments.scene);
+    for (standin::Object& object : scene.objects)
+      object.world_from_object = glm::dmat4(glm::dmat3(arguments.scale)) * object.world_from_object;
+    update_derived(scene);
     const standin::TexturePyramids textures(scene);
     const auto size = scene.bounds.size();
     std::printf("%zu objects, %llu triangles, %.1f x %.1f x %.1f m\n", scene.objects.size(),
