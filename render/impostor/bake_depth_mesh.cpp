@@ -44,7 +44,7 @@ DepthMeshImpostor bake_depth_mesh(const Scene& scene, const TexturePyramids& tex
   });
   summary.layers = static_cast<std::uint32_t>(recording.layers.size());
   summary.meshes = initial.meshes;
-  summary.initial_polygons = initial.polygons.size();
+  summary.initial_polygons = initial.flats + initial.walls;
   summary.triangles = simplified.triangles.size();
   return {request.objects, request.view_cell, recording.frame, recording.layers, std::move(mesh), summary};
 }

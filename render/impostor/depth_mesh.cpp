@@ -88,7 +88,7 @@ class Rules {
   int rows_;
 };
 
-/// Gives each lattice point one vertex. Only two layers are open at a time; a slot that points at a vertex of other coordinates is empty.
+/// Gives each lattice point one vertex. Only three depths are open at a time; a slot that points at a vertex of other coordinates is empty.
 class VertexGrid {
  public:
   VertexGrid(const VoxelLattice& lattice, std::vector<LatticeVertex>& vertices)
@@ -96,9 +96,9 @@ class VertexGrid {
     for (auto& slots : slots_) slots.assign(columns_ * 2 * lattice.height, 0xFFFFFFFF);
   }
 
-  std::uint32_t operator()(std::int32_t x, std::int32_t y, std::int32_t layer) {
-    const LatticeVertex vertex{x, y, layer};
-    std::uint32_t& slot = slots_[static_cast<std::size_t>(layer) % 2][static_cast<std::size_t>(y) * columns_ + static_cast<std::size_t>(x)];
+  std::uint32_t operator()(std::int32_t x, std::int32_t y, std::int32_t depth) {
+    const LatticeVertex vertex{x, y, depth};
+    std::uint32_t& slot = slots_[static_cast<std::size_t>(depth) % 4][static_cast<std::size_t>(y) * columns_ + static_cast<std::size_t>(x)];
     if (slot < vertices_.size() && vertices_[slot] == vertex) return slot;
     slot = static_cast<std::uint32_t>(vertices_.size());
     vertices_.push_back(vertex);
@@ -108,7 +108,7 @@ class VertexGrid {
  private:
   std::size_t columns_;
   std::vector<LatticeVertex>& vertices_;
-  std::array<std::vector<std::uint32_t>, 2> slots_;
+  std::array<std::vector<std::uint32_t>, 4> slots_;
 };
 
 class Mesher {
@@ -139,16 +139,21 @@ class Mesher {
   }
 
   void add_flat(const Cell& c, int layer) {
-    mesh_.polygons.push_back({{vertex_(c.x, c.y, layer), vertex_(c.x, c.y + 1, layer), vertex_(c.x + 1, c.y + 1, layer),
-                               vertex_(c.x + 1, c.y, layer)},
-                              c.x, c.y, layer, false});
+    const std::int32_t depth = 2 * layer;
+    mesh_.polygons.push_back({{vertex_(c.x, c.y, depth), vertex_(c.x, c.y + 1, depth), vertex_(c.x + 1, c.y + 1, depth),
+                               vertex_(c.x + 1, c.y, depth)},
+                              c.x, c.y, layer});
+    ++mesh_.flats;
   }
 
   void add_wall(const Cell& c, const Cell& side, int layer) {
     const std::int32_t x0 = c.x + (side.x > 0 || side.y > 0), x1 = c.x + (side.x > 0 || side.y < 0);
     const std::int32_t y0 = c.y + (side.y > 0 || side.x < 0), y1 = c.y + (side.y > 0 || side.x > 0);
-    mesh_.polygons.push_back(
-        {{vertex_(x0, y0, layer - 1), vertex_(x1, y1, layer - 1), vertex_(x1, y1, layer), vertex_(x0, y0, layer)}, c.x, c.y, layer, true});
+    for (const std::int32_t depth : {2 * layer - 2, 2 * layer - 1})
+      mesh_.polygons.push_back(
+          {{vertex_(x0, y0, depth), vertex_(x1, y1, depth), vertex_(x1, y1, depth + 1), vertex_(x0, y0, depth + 1)},
+           c.x, c.y, (depth + 1) / 2});
+    ++mesh_.walls;
   }
 
   const VoxelLattice& lattice_;

@@ -21,11 +21,12 @@
 
 namespace standin {
 
-/// At texel coordinates (x / 2 + 1/4, y / 2 + 1/4) in the plane of a layer. Integers, so that lengths and their ties are exact.
+/// At texel coordinates (x / 2 + 1/4, y / 2 + 1/4); depth 2 k is the plane of layer k, 2 k - 1 the border of the layers k - 1 and k. Integers,
+/// in half texels and half layers, so that lengths and their ties are exact.
 struct LatticeVertex {
   std::int32_t x = 0;
   std::int32_t y = 0;
-  std::int32_t layer = 0;
+  std::int32_t depth = 0;
   friend bool operator==(const LatticeVertex&, const LatticeVertex&) = default;
 };
 
@@ -33,20 +34,22 @@ struct LatticeVertex {
   return {0.5 * v.x + 0.25, 0.5 * v.y + 0.25};
 }
 
-/// A quadrilateral, and the cell whose voxels it stands for: those of `layer`, for walls of the layer before it too. Cell (x, y) spans
-/// vertices (x, y) to (x + 1, y + 1) and has the voxels x / 2 to (x + 1) / 2, likewise in y.
+/// A quadrilateral, and the cell whose voxels of `layer` it stands for. Cell (x, y) spans vertices (x, y) to (x + 1, y + 1) and has the voxels
+/// x / 2 to (x + 1) / 2, likewise in y. A wall is two such, on either side of the layers' border: on a slope the surface passes there, half
+/// way between the corners of its steps, and simplification may put vertices there.
 struct DepthPolygon {
   std::array<std::uint32_t, 4> corners{0, 0, 0, 0};
   std::int32_t cell_x = 0;
   std::int32_t cell_y = 0;
   std::int32_t layer = 0;
-  bool wall = false;
 };
 
 struct DepthMesh {
   std::vector<LatticeVertex> vertices;
   std::vector<DepthPolygon> polygons;  // by layer, then by row
-  std::uint32_t meshes = 0;            // connected parts
+  std::uint64_t flats = 0;
+  std::uint64_t walls = 0;
+  std::uint32_t meshes = 0;  // connected parts
 };
 
 enum class Sheets { kAll, kSeen };

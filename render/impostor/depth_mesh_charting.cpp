@@ -41,7 +41,7 @@ bool faces(const LatticeNormal& n, const Facing& facing) {
 
 Vec2 chart_coordinates(const LatticeVertex& v, int axis) {
   const Vec2 texel = texel_coordinates(v);
-  return {axis == 0 ? v.layer : texel.x, axis == 1 ? v.layer : texel.y};
+  return {axis == 0 ? 0.5 * v.depth : texel.x, axis == 1 ? 0.5 * v.depth : texel.y};
 }
 
 /// Neighbours of each triangle over its edges, three lists one after the other in order of ids.

@@ -11,15 +11,15 @@ namespace standin {
 namespace {
 
 constexpr std::uint32_t kNone = 0xFFFFFFFF;
+constexpr std::size_t kLargestNeedlessPart = 64;  // triangles
 
 /// The voxels that polygons stand for, one mask a layer.
 std::vector<BitImage> voxels_of(const DepthMesh& mesh, const VoxelLattice& lattice) {
   std::vector<BitImage> voxels(lattice.layers.size(), BitImage(lattice.width, lattice.height));
   for (const DepthPolygon& p : mesh.polygons)
-    for (std::int32_t layer = p.layer - (p.wall ? 1 : 0); layer <= p.layer; ++layer)
-      for (const std::int32_t y : {p.cell_y / 2, (p.cell_y + 1) / 2})
-        for (const std::int32_t x : {p.cell_x / 2, (p.cell_x + 1) / 2})
-          voxels[static_cast<std::size_t>(layer)].set(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y));
+    for (const std::int32_t y : {p.cell_y / 2, (p.cell_y + 1) / 2})
+      for (const std::int32_t x : {p.cell_x / 2, (p.cell_x + 1) / 2})
+        voxels[static_cast<std::size_t>(p.layer)].set(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y));
   return voxels;
 }
 
@@ -91,7 +91,32 @@ class Simplifier {
     for (std::uint64_t step = 0; !queue_.empty(); ++step) {
       if (step % 1024 == 0) budget.check();
       const auto edge = queue_.pop();
-      if (!contract(edge.b, edge.a)) (void)contract(edge.a, edge.b);
+      const bool keep_b = between_layers(edge.b) && !between_layers(edge.a);
+      const std::uint32_t kept = keep_b ? edge.b : edge.a, other = keep_b ? edge.a : edge.b;
+      if (!contract(other, kept)) (void)contract(kept, other);
+    }
+  }
+
+  /// Small parts whose every voxel the rest of the mesh meets as well add nothing; the smallest go first.
+  void drop_needless_parts() {
+    std::vector<std::vector<std::uint32_t>> parts = parts_of_mesh();
+    std::stable_sort(parts.begin(), parts.end(), [](const auto& a, const auto& b) { return a.size() < b.size(); });
+    std::vector<CoverTriangle> triangles;
+    std::vector<std::uint32_t> ids;
+    for (const auto& part : parts)
+      for (const std::uint32_t t : part) {
+        triangles.push_back(cover_triangle(complex_.corners(t)));
+        ids.push_back(t);
+      }
+    std::size_t first = 0;  // of the part at hand
+    for (const auto& part : parts) {
+      if (part.size() > kLargestNeedlessPart) break;
+      const std::size_t end = first + part.size();
+      if (covered_without(first, end, triangles, ids)) {
+        for (std::size_t i = first; i < end; ++i) complex_.remove(ids[i]);
+        for (std::size_t i = 0; i < voxels_.size(); ++i) owners_.give(voxels_[i], new_owners_[i]);
+      }
+      first = end;
     }
   }
 
@@ -118,8 +143,10 @@ class Simplifier {
 
   [[nodiscard]] Vec3 place(std::uint32_t v) const {
     const LatticeVertex& p = complex_.position(v);
-    return {texel_coordinates(p), depths_.plane[static_cast<std::size_t>(p.layer)]};
+    return {texel_coordinates(p), depths_.at(p.depth)};
   }
+  /// There a slope passes, while its steps' corners lie half a layer before and behind it.
+  [[nodiscard]] bool between_layers(std::uint32_t v) const { return complex_.position(v).depth % 2 != 0; }
   [[nodiscard]] CoverTriangle cover_triangle(const TriangleCorners& c) const { return {place(c[0]), place(c[1]), place(c[2])}; }
 
   /// Each voxel to the first triangle that meets it.
@@ -127,12 +154,12 @@ class Simplifier {
     for (std::uint32_t t = 0; t < complex_.triangle_count(); ++t) {
       if (!complex_.alive(t)) continue;
       const CoverTriangle triangle = cover_triangle(complex_.corners(t));
-      std::int32_t first = complex_.position(complex_.corners(t)[0]).layer, last = first;
+      std::int32_t first = complex_.position(complex_.corners(t)[0]).depth, last = first;
       for (const std::uint32_t v : complex_.corners(t)) {
-        first = std::min(first, complex_.position(v).layer);
-        last = std::max(last, complex_.position(v).layer);
+        first = std::min(first, complex_.position(v).depth);
+        last = std::max(last, complex_.position(v).depth);
       }
-      for (std::int32_t layer = first; layer <= last; ++layer) give_voxels(t, triangle, static_cast<std::uint32_t>(layer), voxels);
+      for (std::int32_t layer = first / 2; layer <= (last + 1) / 2; ++layer) give_voxels(t, triangle, static_cast<std::uint32_t>(layer), voxels);
     }
   }
 
@@ -149,6 +176,40 @@ class Simplifier {
   void push_edges(std::uint32_t v) {
     complex_.neighbours_of(v, around_);
     for (const Neighbour& n : around_) queue_.push(complex_.length2(v, n.vertex), v, n.vertex);
+  }
+
+  /// The live triangles, by connected part.
+  [[nodiscard]] std::vector<std::vector<std::uint32_t>> parts_of_mesh() {
+    std::vector<std::vector<std::uint32_t>> parts;
+    std::vector<std::uint8_t> seen(complex_.triangle_count(), 0);
+    for (std::uint32_t t = 0; t < complex_.triangle_count(); ++t) {
+      if (!complex_.alive(t) || seen[t] != 0) continue;
+      seen[t] = 1;
+      std::vector<std::uint32_t>& part = parts.emplace_back(1, t);
+      for (std::size_t i = 0; i < part.size(); ++i)
+        for (const std::uint32_t v : complex_.corners(part[i])) {
+          complex_.triangles_of(v, star_);
+          for (const std::uint32_t next : star_)
+            if (seen[next] == 0) seen[next] = 1, part.push_back(next);
+        }
+    }
+    return parts;
+  }
+
+  /// Whether live triangles beyond [first, end) meet all voxels of those within.
+  [[nodiscard]] bool covered_without(std::size_t first, std::size_t end, const std::vector<CoverTriangle>& triangles,
+                                     const std::vector<std::uint32_t>& ids) {
+    voxels_.clear();
+    new_owners_.clear();
+    for (std::size_t i = first; i < end; ++i) owners_.collect(ids[i], voxels_);
+    return std::all_of(voxels_.begin(), voxels_.end(), [&](std::uint32_t id) {
+      for (std::size_t i = triangles.size(); i-- > 0;)
+        if ((i < first || i >= end) && complex_.alive(ids[i]) && cover_.meets(triangles[i], owners_.voxel(id))) {
+          new_owners_.push_back(ids[i]);
+          return true;
+        }
+      return false;
+    });
   }
 
   /// Takes `removed` into `kept` if all rules allow it.
@@ -232,6 +293,7 @@ SimplifiedMesh simplify(const DepthMesh& mesh, const VoxelLattice& lattice, cons
                         const WorkBudget& budget) {
   Simplifier simplifier(mesh, lattice, depths, enlargement);
   simplifier.run(budget);
+  simplifier.drop_needless_parts();
   return simplifier.result();
 }
 

@@ -136,8 +136,9 @@ TexturedMesh textured(const SimplifiedMesh& mesh, std::span<const LayerImage> im
   std::vector<Vec3> offsets;
   for (const LatticeVertex& v : mesh.vertices) {
     const Vec2 texel = texel_coordinates(v);
-    offsets.push_back(layer_point(frame, layers[static_cast<std::size_t>(v.layer)].distance_m, texel.x, texel.y) -
-                      frame.reference_viewpoint);
+    const Layer& layer = layers[static_cast<std::size_t>(v.depth + 1) / 2];
+    const double distance_m = v.depth % 2 == 0 ? layer.distance_m : layer.near_m;
+    offsets.push_back(layer_point(frame, distance_m, texel.x, texel.y) - frame.reference_viewpoint);
   }
   const VoxelColours colours(images, lattice, frame, layers);
   TexturedMesh result;

@@ -5,8 +5,8 @@
 namespace standin {
 
 LatticeNormal lattice_normal(const LatticeVertex& a, const LatticeVertex& b, const LatticeVertex& c) {
-  const std::int64_t ux = b.x - a.x, uy = b.y - a.y, uz = 2 * (b.layer - a.layer);
-  const std::int64_t vx = c.x - a.x, vy = c.y - a.y, vz = 2 * (c.layer - a.layer);
+  const std::int64_t ux = b.x - a.x, uy = b.y - a.y, uz = b.depth - a.depth;
+  const std::int64_t vx = c.x - a.x, vy = c.y - a.y, vz = c.depth - a.depth;
   return {uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx};
 }
 
@@ -20,7 +20,9 @@ bool same_direction(const LatticeNormal& a, const LatticeNormal& b) {
 
 class FlatReduction {
  public:
-  explicit FlatReduction(TriangleComplex& complex) : complex_(complex), due_(complex.vertex_count(), 1), rested_(complex.vertex_count(), 0) {}
+  explicit FlatReduction(TriangleComplex& complex) : complex_(complex), due_(complex.vertex_count(), 1), rested_(complex.vertex_count(), 0) {
+    for (std::uint32_t v = 0; v < complex.vertex_count(); ++v) slope_.push_back(on_slope(v) ? 1 : 0);
+  }
 
   /// A vertex rests for a pass once a neighbour went, so that triangles grow evenly.
   void run() {
@@ -56,7 +58,7 @@ class FlatReduction {
       return la != lb ? la < lb : a.vertex < b.vertex;
     });
     for (const auto& n : neighbours_) {
-      if (!keeps_surface(v, n.vertex)) continue;
+      if ((slope_[v] != 0 && slope_[n.vertex] == 0) || !keeps_surface(v, n.vertex)) continue;
       complex_.neighbours_of(n.vertex, others_);
       if (!complex_.may_contract(neighbours_, others_, n.vertex)) continue;
       complex_.contract(v, n.vertex, star_);
@@ -83,7 +85,23 @@ class FlatReduction {
     });
   }
 
+  /// Half way down a step of one layer. Where a wall goes on it is no slope.
+  [[nodiscard]] bool on_slope(std::uint32_t v) {
+    const LatticeVertex p = complex_.position(v);
+    if (p.depth % 2 == 0) return false;
+    complex_.neighbours_of(v, neighbours_);
+    for (const auto& n : neighbours_) {
+      const LatticeVertex q = complex_.position(n.vertex);
+      if (q.x != p.x || q.y != p.y) continue;
+      complex_.neighbours_of(n.vertex, others_);
+      for (const auto& m : others_)
+        if (complex_.position(m.vertex) == LatticeVertex{p.x, p.y, 2 * q.depth - p.depth}) return false;
+    }
+    return true;
+  }
+
   TriangleComplex& complex_;
+  std::vector<std::uint8_t> slope_;
   std::vector<std::uint8_t> due_;
   std::vector<std::uint32_t> rested_;  // the pass
   std::vector<std::uint32_t> star_;

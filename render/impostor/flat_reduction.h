@@ -5,7 +5,7 @@
 
 namespace standin {
 
-/// Integer normal in half texels and half layers.
+/// Integer normal, in half texels and half layers.
 struct LatticeNormal {
   std::int64_t x = 0, y = 0, z = 0;
   friend bool operator==(const LatticeNormal&, const LatticeNormal&) = default;
@@ -13,7 +13,8 @@ struct LatticeNormal {
 [[nodiscard]] LatticeNormal lattice_normal(const LatticeVertex& a, const LatticeVertex& b, const LatticeVertex& c);
 [[nodiscard]] inline std::int64_t dot(const LatticeNormal& a, const LatticeNormal& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 
-/// Afterwards no vertex can be taken into a neighbour without changing a point of the surface, its border or its plane parts.
+/// Takes vertices into neighbours as long as that changes no point of the surface and of its borders. Vertices half way down a step of a
+/// slope are kept for what follows.
 void reduce_flat_parts(TriangleComplex& complex);
 
 }  // namespace standin

@@ -89,7 +89,7 @@ void TriangleComplex::neighbours_of(std::uint32_t v, std::vector<Neighbour>& res
 
 std::int64_t TriangleComplex::length2(std::uint32_t a, std::uint32_t b) const {
   const std::int64_t dx = positions_[a].x - positions_[b].x, dy = positions_[a].y - positions_[b].y;
-  const std::int64_t dz = 2 * (positions_[a].layer - positions_[b].layer);
+  const std::int64_t dz = positions_[a].depth - positions_[b].depth;
   return dx * dx + dy * dy + dz * dz;
 }
 

@@ -30,7 +30,7 @@ class TriangleComplex {
   /// The live triangles at a vertex; none where it has been removed.
   void triangles_of(std::uint32_t v, std::vector<std::uint32_t>& result);
   void neighbours_of(std::uint32_t v, std::vector<Neighbour>& result);
-  /// Squared, in half texels; one layer counts as one texel.
+  /// Squared, in half texels and half layers.
   [[nodiscard]] std::int64_t length2(std::uint32_t a, std::uint32_t b) const;
 
   /// Whether taking `removed` into `kept` leaves border a border and manifold edges manifold: an end of a border edge goes along the border
@@ -38,6 +38,7 @@ class TriangleComplex {
   [[nodiscard]] bool may_contract(const std::vector<Neighbour>& of_removed, const std::vector<Neighbour>& of_kept, std::uint32_t kept) const;
   /// Triangles of the edge vanish, the others of `removed` (its star) take `kept` as corner.
   void contract(std::uint32_t removed, std::uint32_t kept, const std::vector<std::uint32_t>& star);
+  void remove(std::uint32_t triangle) { corners_[triangle][0] = kNone; }
 
  private:
   static constexpr std::uint32_t kNone = 0xFFFFFFFF;

@@ -38,6 +38,12 @@ struct LatticeDepths {
   std::vector<double> plane;  // where the layer lies
   std::vector<double> near;   // the range it stands for
   std::vector<double> far;
+
+  /// 2 k: the plane of layer k, 2 k - 1: its near border.
+  [[nodiscard]] double at(std::int32_t half_layers) const {
+    const auto k = static_cast<std::size_t>(half_layers + 1) / 2;
+    return half_layers % 2 == 0 ? plane[k] : near[k];
+  }
 };
 [[nodiscard]] LatticeDepths lattice_depths(std::span<const Layer> layers);
 /// Layer k at depth k, reaching half a layer to both sides.
