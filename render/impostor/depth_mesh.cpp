@@ -1,5 +1,6 @@
 #include "render/impostor/depth_mesh.h"
 
+#include <algorithm>
 #include <numeric>
 
 namespace standin {
@@ -40,17 +41,11 @@ class Rules {
     return !under_a_sheet(c, outside, side, layer);
   }
 
-  /// Where a surface recedes under itself: its steps' undersides, as far as they join two loose edges and no three polygons at one.
+  /// Where a surface recedes under itself: its steps' undersides, as far as a row or column of them joins loose edges at both ends.
   [[nodiscard]] bool back_flat(const Cell& c, int layer) const {
-    if (all_ || !in_both(c, layer) || opaque(c, layer + 1) || !wanted(c, layer)) return false;
-    int loose_edges = 0;
-    for (const Cell& side : kSides) {
-      const Cell other = beside(c, side);
-      const int polygons = front_flat(other, layer) + wall_between(c, side, layer) + wall_between(c, side, layer + 1);
-      if (polygons > 1) return false;
-      loose_edges += polygons;
-    }
-    return loose_edges >= 2;
+    if (!may_be_back_flat(c, layer)) return false;
+    return (leads_to_loose_edge(c, kSides[0], layer) && leads_to_loose_edge(c, kSides[2], layer)) ||
+           (leads_to_loose_edge(c, kSides[1], layer) && leads_to_loose_edge(c, kSides[3], layer));
   }
 
  private:
@@ -81,6 +76,22 @@ class Rules {
   [[nodiscard]] bool wall_between(const Cell& c, const Cell& side, int layer) const {
     return has_layer(layer) && (wall(c, side, layer) || wall(beside(c, side), {-side.x, -side.y}, layer));
   }
+
+  /// Without counting undersides.
+  [[nodiscard]] int polygons_at(const Cell& c, const Cell& side, int layer) const {
+    return front_flat(beside(c, side), layer) + wall_between(c, side, layer) + wall_between(c, side, layer + 1);
+  }
+  [[nodiscard]] bool may_be_back_flat(const Cell& c, int layer) const {
+    if (all_ || !in_both(c, layer) || opaque(c, layer + 1) || !wanted(c, layer)) return false;
+    return std::all_of(kSides.begin(), kSides.end(), [&](const Cell& side) { return polygons_at(c, side, layer) <= 1; });
+  }
+  [[nodiscard]] bool leads_to_loose_edge(Cell c, const Cell& side, int layer) const {
+    for (int steps = 0; steps < kLongestUnderside && may_be_back_flat(c, layer); ++steps, c = beside(c, side))
+      if (polygons_at(c, side, layer) == 1) return true;
+    return false;
+  }
+
+  static constexpr int kLongestUnderside = 8;  // cells; a surface recedes by a texel a layer, the rest is for touched texels
 
   const VoxelLattice& lattice_;
   bool all_;

@@ -41,6 +41,18 @@ void grow_wanted(VoxelLattice& lattice, const std::vector<BitImage>& behind_seen
   }
 }
 
+/// Adds opaque voxels between seen ones of the layers before and behind. Where a surface recedes under itself, rays at the limit of their
+/// shift just miss them, but its steps hang together through them.
+void add_bridges(VoxelLattice& lattice) {
+  std::vector<BitImage> bridges;
+  for (std::size_t k = 1; k + 1 < lattice.layers.size(); ++k) {
+    BitImage& bridge = bridges.emplace_back(dilated(lattice.layers[k - 1].wanted));
+    bridge &= dilated(lattice.layers[k + 1].wanted);
+    bridge &= lattice.layers[k].opaque;
+  }
+  for (std::size_t i = 0; i < bridges.size(); ++i) lattice.layers[i + 1].wanted |= bridges[i];
+}
+
 VoxelLattice sized_like(const std::vector<BitImage>& opaque) {
   return {opaque.front().width(), opaque.front().height(), {}};
 }
@@ -59,6 +71,7 @@ VoxelLattice voxel_lattice(std::vector<BitImage> opaque, int ring) {
     behind_seen.push_back(dilated(wanted));
     lattice.layers.push_back({std::move(mask), std::move(solid), std::move(wanted)});
   }
+  add_bridges(lattice);
   for (int i = 0; i < ring; ++i) grow_wanted(lattice, behind_seen);
   return lattice;
 }
