@@ -26,9 +26,9 @@ BitImage dilated(const BitImage& image) {
   return result;
 }
 
-/// One step of growth into opaque neighbours, among them those of the next and the previous layer. What lies right behind something seen is
-/// left out: that is the inside of a surface, not a background.
-void grow_wanted(VoxelLattice& lattice, const std::vector<BitImage>& behind_seen) {
+/// One step of growth into opaque neighbours, among them those of the next and the previous layer. What lies right behind something seen, or
+/// hidden right before it, is left out: that is the inside of a surface, not a background.
+void grow_wanted(VoxelLattice& lattice, const std::vector<BitImage>& inside) {
   std::vector<BitImage> wide;
   for (const VoxelLayer& layer : lattice.layers) wide.push_back(dilated(layer.wanted));
   for (std::size_t k = 0; k < wide.size(); ++k) {
@@ -36,7 +36,7 @@ void grow_wanted(VoxelLattice& lattice, const std::vector<BitImage>& behind_seen
     if (k > 0) grown |= wide[k - 1];
     if (k + 1 < wide.size()) grown |= wide[k + 1];
     grown &= lattice.layers[k].opaque;
-    grown -= behind_seen[k];
+    grown -= inside[k];
     lattice.layers[k].wanted |= grown;
   }
 }
@@ -63,16 +63,17 @@ VoxelLattice sized_like(const std::vector<BitImage>& opaque) {
 VoxelLattice voxel_lattice(std::vector<BitImage> opaque, int ring) {
   VoxelLattice lattice = sized_like(opaque);
   OcclusionCulling culling(lattice.width, lattice.height, CullRule::kCorner);
-  std::vector<BitImage> behind_seen{BitImage(lattice.width, lattice.height)};
+  std::vector<BitImage> inside{BitImage(lattice.width, lattice.height)};
   for (BitImage& mask : opaque) {
     BitImage solid = culling.hidden(), wanted = mask;
     wanted -= culling.hidden_in_next(mask);
     solid |= mask;
-    behind_seen.push_back(dilated(wanted));
+    inside.push_back(dilated(wanted));
     lattice.layers.push_back({std::move(mask), std::move(solid), std::move(wanted)});
   }
   add_bridges(lattice);
-  for (int i = 0; i < ring; ++i) grow_wanted(lattice, behind_seen);
+  for (std::size_t k = 0; k + 1 < lattice.layers.size(); ++k) inside[k] |= lattice.layers[k + 1].wanted;
+  for (int i = 0; i < ring; ++i) grow_wanted(lattice, inside);
   return lattice;
 }
 
