@@ -1,47 +1,14 @@
-// The bake, step by step (thesis 3.2): plan, record, cull, cut into quads. One thread; many bakes run side by side.
+// The bake, step by step (thesis 3.2): plan and record, cull, cut into quads. One thread; many bakes run side by side.
 #include "render/impostor/bake.h"
 
-#include <string>
-
-#include "render/base/error.h"
 #include "render/impostor/atlas.h"
 #include "render/impostor/culling.h"
 #include "render/impostor/quads.h"
-#include "render/impostor/recorder.h"
+#include "render/impostor/recording.h"
+#include "render/impostor/texture_pyramid.h"
 
 namespace standin {
 namespace {
-
-void validate(const Scene& scene, const BakeRequest& request) {
-  if (request.objects.empty()) throw Failure(ErrorWord::kBadUsage, "bake request without objects: at least one is needed");
-  for (const std::uint32_t id : request.objects)
-    if (id >= scene.objects.size())
-      throw Failure(ErrorWord::kBadUsage, "bake request names object " + std::to_string(id) + " of a scene with " +
-                                              std::to_string(scene.objects.size()) + " objects");
-}
-
-Box bounds_of(const Scene& scene, std::span<const std::uint32_t> objects) {
-  Box bounds;
-  for (const std::uint32_t id : objects) bounds.extend(scene.objects[id].bounds);
-  return bounds;
-}
-
-std::vector<Vec3> world_vertices(const Scene& scene, std::span<const std::uint32_t> objects) {
-  std::vector<Vec3> points;
-  for (const std::uint32_t id : objects) {
-    const Object& object = scene.objects[id];
-    for (std::uint32_t i = 0; i < object.part_count; ++i)
-      for (const glm::vec3& position : scene.meshes[scene.parts[object.first_part + i].mesh].positions)
-        points.emplace_back(object.world_from_object * Vec4(Vec3(position), 1.0));
-  }
-  return points;
-}
-
-BitImage opaque_texels(const LayerImage& image) {
-  BitImage opaque(image.width(), image.height());
-  image.for_each_opaque([&](std::uint32_t x, std::uint32_t y) { opaque.set(x, y); });
-  return opaque;
-}
 
 /// Appends the quad's block of texels; each texel goes to the first quad that holds it.
 void append_block(const LayerImage& image, const Quad& quad, BitImage& left, std::vector<std::uint8_t>& texels) {
@@ -71,17 +38,9 @@ void cut_into_quads(const std::vector<LayerImage>& images, const BakeQuality& qu
 
 Impostor bake_layered(const Scene& scene, const TexturePyramids& textures, const BakeRequest& request, const Camera& camera,
                       const BakeQuality& quality, const WorkBudget& budget) {
-  validate(scene, request);
-  const ImpostorPlan plan =
-      plan_impostor(bounds_of(scene, request.objects), world_vertices(scene, request.objects), request.view_cell, camera, quality);
-  if (!plan.possible)
-    throw Failure(ErrorWord::kImpostorImpossible, "impostor of " + std::to_string(request.objects.size()) + " objects from object " +
-                                                      std::to_string(request.objects.front()) + " on: " + plan.why_not);
-  Impostor impostor{request.objects, request.view_cell, plan.frame, plan.layers, {}, {}, {}, Technique::kLayered};
-  const auto images = record_layers(scene, textures, request.objects, impostor.frame, impostor.layers,
-                                    quality.supercover ? Coverage::kClosed : Coverage::kCentre, budget,
-                                    quality.leave_out ? Texturing::kWhereTextured : Texturing::kEverywhere);
-  cut_into_quads(images, quality, budget, impostor);
+  const Recording recording = record_request(scene, textures, request, camera, quality, budget);
+  Impostor impostor{request.objects, request.view_cell, recording.frame, recording.layers, {}, {}, {}, Technique::kLayered};
+  cut_into_quads(recording.images, quality, budget, impostor);
   return impostor;
 }
 

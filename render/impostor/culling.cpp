@@ -36,6 +36,12 @@ void require_block(BitImage& image, Offset offset) {
 OcclusionCulling::OcclusionCulling(std::uint32_t width, std::uint32_t height, CullRule rule)
     : rule_(rule), hidden_(rule == CullRule::kUmbra ? 1 : 4, BitImage(width, height)) {}
 
+BitImage OcclusionCulling::hidden() const {
+  BitImage result = hidden_.front();
+  for (const BitImage& hidden : hidden_) result &= hidden;
+  return result;
+}
+
 BitImage OcclusionCulling::hidden_in_next(const BitImage& opaque) {
   constexpr Offset kClasses[] = {{-1, -1}, {1, -1}, {-1, 1}, {1, 1}};
   BitImage result = opaque;

@@ -21,6 +21,8 @@ class OcclusionCulling {
 
   /// Which texels of the next layer (near to far) nobody in the view cell can see.
   [[nodiscard]] BitImage hidden_in_next(const BitImage& opaque);
+  /// Which places of the next layer nobody can see, opaque or not.
+  [[nodiscard]] BitImage hidden() const;
 
  private:
   CullRule rule_;

@@ -1,0 +1,213 @@
+#include "render/impostor/depth_mesh_charting.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <unordered_set>
+
+#include "render/impostor/flat_reduction.h"
+
+namespace standin {
+namespace {
+
+constexpr std::uint32_t kNone = 0xFFFFFFFF;
+
+/// The side of the lattice a chart is seen from: axis 0, 1, 2 (x, y, layer) and the direction along it.
+struct Facing {
+  int axis = 2;
+  bool positive = false;
+};
+
+std::array<std::int64_t, 3> components(const LatticeNormal& n) {
+  return {n.x, n.y, n.z};
+}
+
+/// The side a triangle faces most; of equals the view's.
+Facing facing_of(const LatticeNormal& n) {
+  const auto c = components(n);
+  int axis = 2;
+  for (const int other : {0, 1})
+    if (std::abs(c[static_cast<std::size_t>(other)]) > std::abs(c[static_cast<std::size_t>(axis)])) axis = other;
+  return {axis, c[static_cast<std::size_t>(axis)] > 0};
+}
+
+/// Whether a triangle, seen from that side, is no more than about halved in size.
+bool faces(const LatticeNormal& n, const Facing& facing) {
+  const auto c = components(n);
+  const std::int64_t along = facing.positive ? c[static_cast<std::size_t>(facing.axis)] : -c[static_cast<std::size_t>(facing.axis)];
+  return 2 * along >= std::max({std::abs(c[0]), std::abs(c[1]), std::abs(c[2])});
+}
+
+Vec2 chart_coordinates(const LatticeVertex& v, int axis) {
+  const Vec2 texel = texel_coordinates(v);
+  return {axis == 0 ? 0.5 * v.depth : texel.x, axis == 1 ? 0.5 * v.depth : texel.y};
+}
+
+/// Neighbours of each triangle over its edges, three lists one after the other in order of ids.
+std::vector<std::vector<std::uint32_t>> neighbours_over_edges(const SimplifiedMesh& mesh) {
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<std::uint32_t>> triangles_of_edge;
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::uint32_t a = mesh.triangles[t][i], b = mesh.triangles[t][(i + 1) % 3];
+      triangles_of_edge[{std::min(a, b), std::max(a, b)}].push_back(t);
+    }
+  std::vector<std::vector<std::uint32_t>> neighbours(mesh.triangles.size());
+  for (const auto& [edge, triangles] : triangles_of_edge)
+    for (const std::uint32_t t : triangles)
+      for (const std::uint32_t other : triangles)
+        if (other != t) neighbours[t].push_back(other);
+  return neighbours;
+}
+
+using FlatTriangle = std::array<Vec2, 3>;
+
+/// visit(x, y) for each texel whose centre lies within the triangle and not on its outline.
+template <class Visit>
+void for_each_centre(const FlatTriangle& t, const Visit& visit) {
+  const auto cross = [](const Vec2& a, const Vec2& b) { return a.x * b.y - a.y * b.x; };
+  const double sign = cross(t[1] - t[0], t[2] - t[0]) < 0.0 ? -1.0 : 1.0;
+  const Vec2 low = glm::min(t[0], glm::min(t[1], t[2])), high = glm::max(t[0], glm::max(t[1], t[2]));
+  for (auto y = static_cast<int>(std::floor(low.y)); y <= high.y; ++y)
+    for (auto x = static_cast<int>(std::floor(low.x)); x <= high.x; ++x) {
+      const Vec2 centre(x + 0.5, y + 0.5);
+      bool inside = true;
+      for (std::size_t i = 0; i < 3 && inside; ++i) inside = sign * cross(t[(i + 1) % 3] - t[i], centre - t[i]) > 1e-9;
+      if (inside) visit(x, y);
+    }
+}
+
+struct Rect {
+  Vec2 low{std::numeric_limits<double>::infinity()};
+  Vec2 high{-std::numeric_limits<double>::infinity()};
+
+  void extend(const Rect& other) {
+    low = glm::min(low, other.low);
+    high = glm::max(high, other.high);
+  }
+  [[nodiscard]] Vec2 texels() const { return glm::max(glm::ceil(high) - glm::floor(low), Vec2(1.0)); }
+  /// Of its place in the atlas, with a gutter of one texel.
+  [[nodiscard]] double cost() const { return (texels().x + 2.0) * (texels().y + 2.0); }
+};
+
+Rect bounds_of(const FlatTriangle& t) {
+  return {glm::min(t[0], glm::min(t[1], t[2])), glm::max(t[0], glm::max(t[1], t[2]))};
+}
+
+/// Grows charts from the largest triangles. The next triangle is the neighbour whose addition saves most against a block of its own; growth
+/// ends where none saves anything.
+class Charting {
+ public:
+  Charting(const SimplifiedMesh& mesh, double scale, std::uint32_t max_side)
+      : mesh_(mesh), scale_(scale), max_side_(max_side), neighbours_(neighbours_over_edges(mesh)), done_(mesh.triangles.size(), 0),
+        local_(mesh.vertices.size(), kNone) {
+    for (const TriangleCorners& c : mesh.triangles)
+      normals_.push_back(lattice_normal(mesh.vertices[c[0]], mesh.vertices[c[1]], mesh.vertices[c[2]]));
+  }
+
+  [[nodiscard]] std::vector<ChartDraft> run() {
+    std::vector<std::uint32_t> seeds(mesh_.triangles.size());
+    std::iota(seeds.begin(), seeds.end(), 0U);
+    std::stable_sort(seeds.begin(), seeds.end(),
+                     [&](std::uint32_t a, std::uint32_t b) { return dot(normals_[a], normals_[a]) > dot(normals_[b], normals_[b]); });
+    std::vector<ChartDraft> charts;
+    for (const std::uint32_t t : seeds)
+      if (done_[t] == 0) charts.push_back(grow(t));
+    return charts;
+  }
+
+ private:
+  ChartDraft grow(std::uint32_t seed) {
+    facing_ = facing_of(normals_[seed]);
+    taken_.clear();
+    bounds_ = Rect{};
+    members_.clear();
+    frontier_.clear();
+    take(seed);
+    while (!frontier_.empty()) {
+      std::size_t best = 0;
+      for (std::size_t i = 1; i < frontier_.size(); ++i)
+        if (saving(frontier_[i]) > saving(frontier_[best])) best = i;
+      const std::uint32_t next = frontier_[best];
+      if (saving(next) < 0.0) break;
+      frontier_.erase(frontier_.begin() + static_cast<std::ptrdiff_t>(best));
+      if (is_free(next)) take(next);
+    }
+    return draft();
+  }
+
+  [[nodiscard]] FlatTriangle flat(std::uint32_t t) const {
+    FlatTriangle result;
+    for (std::size_t i = 0; i < 3; ++i) result[i] = scale_ * chart_coordinates(mesh_.vertices[mesh_.triangles[t][i]], facing_.axis);
+    return result;
+  }
+
+  /// Texels that the atlas saves if the triangle joins; negative also where the block would become too large.
+  [[nodiscard]] double saving(std::uint32_t t) const {
+    const Rect alone = bounds_of(flat(t));
+    Rect joined = bounds_;
+    joined.extend(alone);
+    if (std::max(joined.texels().x, joined.texels().y) > max_side_) return -1.0;
+    return alone.cost() + bounds_.cost() - joined.cost();
+  }
+
+  /// Whether the triangle lies upon none of the chart.
+  [[nodiscard]] bool is_free(std::uint32_t t) const {
+    bool free = true;
+    for_each_centre(flat(t), [&](int x, int y) { free = free && !taken_.contains(key(x, y)); });
+    return free;
+  }
+
+  void take(std::uint32_t t) {
+    for_each_centre(flat(t), [&](int x, int y) { taken_.insert(key(x, y)); });
+    bounds_.extend(bounds_of(flat(t)));
+    done_[t] = 1;
+    members_.push_back(t);
+    for (const std::uint32_t next : neighbours_[t])
+      if (done_[next] == 0 && faces(normals_[next], facing_) && std::find(frontier_.begin(), frontier_.end(), next) == frontier_.end())
+        frontier_.push_back(next);
+  }
+
+  static std::uint64_t key(int x, int y) { return static_cast<std::uint64_t>(y) << 32 | static_cast<std::uint32_t>(x); }
+
+  [[nodiscard]] ChartDraft draft() {
+    const Vec2 origin = glm::floor(bounds_.low), size = bounds_.texels();
+    ChartDraft chart{static_cast<std::uint32_t>(size.x), static_cast<std::uint32_t>(size.y), {}, {}, {}};
+    for (const std::uint32_t t : members_) {
+      TriangleCorners corners = mesh_.triangles[t];
+      for (std::uint32_t& corner : corners) {
+        if (local_[corner] == kNone) {
+          local_[corner] = static_cast<std::uint32_t>(chart.vertices.size());
+          chart.vertices.push_back(corner);
+          chart.texels.push_back(scale_ * chart_coordinates(mesh_.vertices[corner], facing_.axis) - origin);
+        }
+        corner = local_[corner];
+      }
+      chart.triangles.push_back(corners);
+    }
+    for (const std::uint32_t v : chart.vertices) local_[v] = kNone;
+    return chart;
+  }
+
+  const SimplifiedMesh& mesh_;
+  double scale_;
+  std::uint32_t max_side_;
+  std::vector<std::vector<std::uint32_t>> neighbours_;
+  std::vector<LatticeNormal> normals_;
+  std::vector<std::uint8_t> done_;
+  std::vector<std::uint32_t> local_;  // index of a vertex in the chart at hand
+  // The chart at hand:
+  Facing facing_;
+  Rect bounds_;
+  std::vector<std::uint32_t> members_;
+  std::vector<std::uint32_t> frontier_;      // neighbours that may join
+  std::unordered_set<std::uint64_t> taken_;  // texels
+};
+
+}  // namespace
+
+std::vector<ChartDraft> charts_of(const SimplifiedMesh& mesh, double texels_per_voxel, std::uint32_t max_side) {
+  return Charting(mesh, texels_per_voxel, max_side).run();
+}
+
+}  // namespace standin

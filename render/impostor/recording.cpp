@@ -1,0 +1,58 @@
+#include "render/impostor/recording.h"
+
+#include <string>
+
+#include "render/base/error.h"
+#include "render/impostor/recorder.h"
+
+namespace standin {
+namespace {
+
+void validate(const Scene& scene, const BakeRequest& request) {
+  if (request.objects.empty()) throw Failure(ErrorWord::kBadUsage, "bake request without objects: at least one is needed");
+  for (const std::uint32_t id : request.objects)
+    if (id >= scene.objects.size())
+      throw Failure(ErrorWord::kBadUsage, "bake request names object " + std::to_string(id) + " of a scene with " +
+                                              std::to_string(scene.objects.size()) + " objects");
+}
+
+Box bounds_of(const Scene& scene, std::span<const std::uint32_t> objects) {
+  Box bounds;
+  for (const std::uint32_t id : objects) bounds.extend(scene.objects[id].bounds);
+  return bounds;
+}
+
+std::vector<Vec3> world_vertices(const Scene& scene, std::span<const std::uint32_t> objects) {
+  std::vector<Vec3> points;
+  for (const std::uint32_t id : objects) {
+    const Object& object = scene.objects[id];
+    for (std::uint32_t i = 0; i < object.part_count; ++i)
+      for (const glm::vec3& position : scene.meshes[scene.parts[object.first_part + i].mesh].positions)
+        points.emplace_back(object.world_from_object * Vec4(Vec3(position), 1.0));
+  }
+  return points;
+}
+
+}  // namespace
+
+Recording record_request(const Scene& scene, const TexturePyramids& textures, const BakeRequest& request, const Camera& camera,
+                         const BakeQuality& quality, const WorkBudget& budget) {
+  validate(scene, request);
+  const ImpostorPlan plan =
+      plan_impostor(bounds_of(scene, request.objects), world_vertices(scene, request.objects), request.view_cell, camera, quality);
+  if (!plan.possible)
+    throw Failure(ErrorWord::kImpostorImpossible, "impostor of " + std::to_string(request.objects.size()) + " objects from object " +
+                                                      std::to_string(request.objects.front()) + " on: " + plan.why_not);
+  return {plan.frame, plan.layers,
+          record_layers(scene, textures, request.objects, plan.frame, plan.layers,
+                        quality.supercover ? Coverage::kClosed : Coverage::kCentre, budget,
+                        quality.leave_out ? Texturing::kWhereTextured : Texturing::kEverywhere)};
+}
+
+BitImage opaque_texels(const LayerImage& image) {
+  BitImage opaque(image.width(), image.height());
+  image.for_each_opaque([&](std::uint32_t x, std::uint32_t y) { opaque.set(x, y); });
+  return opaque;
+}
+
+}  // namespace standin

@@ -1,0 +1,51 @@
+// How far a simplified mesh may stray: every voxel it stands for, enlarged by a factor, must still meet it, and its edges must stay within
+// enlarged opaque voxels (thesis 4.5, math.md 7.4).
+//
+// All tests are made in (texel x, texel y, scaled inverse depth), where the triangles that are drawn in the world are plane too; so the
+// bound holds for what is drawn and not only for the lattice. Boxes are closed.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "render/impostor/voxel_lattice.h"
+
+namespace standin {
+
+struct Voxel {
+  std::uint32_t x = 0;
+  std::uint32_t y = 0;
+  std::uint32_t layer = 0;
+};
+
+/// A triangle with what its tests against boxes have in common.
+struct CoverTriangle {
+  CoverTriangle(const Vec3& a, const Vec3& b, const Vec3& c);
+
+  std::array<Vec3, 3> corners;
+  Vec3 normal{0.0};
+  Vec3 low{0.0}, high{0.0};
+};
+
+class VoxelCover {
+ public:
+  /// Both must outlive this. `enlargement` >= 1 scales voxels about their centre, and their depth range about the layer's plane.
+  VoxelCover(const VoxelLattice& lattice, const LatticeDepths& depths, double enlargement);
+
+  [[nodiscard]] bool meets(const CoverTriangle& triangle, const Voxel& voxel) const;
+  /// Whether every point of the segment lies in an enlarged opaque voxel.
+  [[nodiscard]] bool covers(const Vec3& from, const Vec3& to) const;
+
+ private:
+  struct Span {
+    double low = 0.0;
+    double high = 0.0;
+  };
+  [[nodiscard]] double farthest_exit(const Vec3& from, const Vec3& to, double share) const;
+
+  const VoxelLattice& lattice_;
+  double half_side_;
+  std::vector<Span> depth_;  // of the enlarged voxels of a layer
+};
+
+}  // namespace standin
