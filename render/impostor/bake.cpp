@@ -1,6 +1,7 @@
 // The bake, step by step (thesis 3.2): plan, record, cull, cut into quads. One thread; many bakes run side by side.
 #include "render/impostor/bake.h"
 
+#include <algorithm>
 #include <string>
 
 #include "render/base/error.h"
@@ -35,6 +36,19 @@ std::vector<Vec3> world_vertices(const Scene& scene, std::span<const std::uint32
         points.emplace_back(object.world_from_object * Vec4(Vec3(position), 1.0));
   }
   return points;
+}
+
+bool holds_masked(const Scene& scene, std::span<const std::uint32_t> objects) {
+  return std::any_of(objects.begin(), objects.end(), [&](std::uint32_t id) {
+    const auto first = scene.parts.begin() + static_cast<std::ptrdiff_t>(scene.objects[id].first_part);
+    return std::any_of(first, first + static_cast<std::ptrdiff_t>(scene.objects[id].part_count),
+                       [&](const Part& part) { return scene.materials[part.material].alpha_mode == AlphaMode::kMask; });
+  });
+}
+
+Coverage coverage_of(const BakeQuality& quality) {
+  if (!quality.supercover) return Coverage::kCentre;
+  return quality.fuzzy ? Coverage::kFuzzy : Coverage::kClosed;
 }
 
 BitImage opaque_texels(const LayerImage& image) {
@@ -78,8 +92,8 @@ Impostor bake_layered(const Scene& scene, const TexturePyramids& textures, const
     throw Failure(ErrorWord::kImpostorImpossible, "impostor of " + std::to_string(request.objects.size()) + " objects from object " +
                                                       std::to_string(request.objects.front()) + " on: " + plan.why_not);
   Impostor impostor{request.objects, request.view_cell, plan.frame, plan.layers, {}, {}, {}, Technique::kLayered};
-  const auto images = record_layers(scene, textures, request.objects, impostor.frame, impostor.layers,
-                                    quality.supercover ? Coverage::kClosed : Coverage::kCentre, budget,
+  impostor.fuzzy = quality.fuzzy && holds_masked(scene, request.objects);
+  const auto images = record_layers(scene, textures, request.objects, impostor.frame, impostor.layers, coverage_of(quality), budget,
                                     quality.leave_out ? Texturing::kWhereTextured : Texturing::kEverywhere);
   cut_into_quads(images, quality, budget, impostor);
   return impostor;

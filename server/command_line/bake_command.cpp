@@ -100,7 +100,8 @@ int bake_command(const CommandContext& context) {
                     {"spec", to_json(context.spec, true)}};
   OutputFolder folder(arguments.output, job.dump());
   Impostor impostor = bake_layered(scene, request, camera_of(context.spec), quality_of(context.spec, ViewSpaceKind::kWalk), context.budget);
-  json metrics = {{"layers", impostor.layers.size()},
+  json metrics = {{"guarantee", guarantee_name(impostor)},
+                  {"layers", impostor.layers.size()},
                   {"quads", impostor.quads.size()},
                   {"resolution", {impostor.frame.width, impostor.frame.height}},
                   {"texels", impostor.texel_count()},
