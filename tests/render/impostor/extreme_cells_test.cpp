@@ -196,6 +196,77 @@ TEST(ExtremeCameras, OfOneTo150DegreesKeepThePromise) {
   }
 }
 
+double log_uniform(Rng& rng, double low, double high) {
+  return low * std::pow(high / low, rng.uniform());
+}
+
+/// A cell of any size and shape at any distance from a cluster of unit size.
+ViewCell any_cell(Rng& rng) {
+  const double distance = 0.5 + log_uniform(rng, 1e-4, 1e8), size = log_uniform(rng, 1e-9, 1e3) * distance;
+  if (rng.uniform() < 0.5) {
+    Shaft shaft = shaft_frame(Vec3(0.0), glm::normalize(test::random_point(rng, {Vec3(-1.0), Vec3(1.0)})));
+    shaft.tan_half = {log_uniform(rng, 1e-9, 2.0), rng.uniform() < 0.2 ? 0.0 : log_uniform(rng, 1e-9, 2.0)};
+    shaft.min_distance_m = distance;
+    return shaft;
+  }
+  const Vec3 low(rng.uniform(-2.0, 2.0) * size, rng.uniform(-2.0, 2.0) * distance, distance);
+  return Box{low, low + size * Vec3(rng.uniform(), log_uniform(rng, 1e-6, 1.0), log_uniform(rng, 1e-6, 1.0))};
+}
+
+Camera any_camera(Rng& rng) {
+  Camera camera;
+  camera.fov_y_rad = rng.uniform(1.0, 150.0) * kDegree;
+  camera.width = camera.height = static_cast<int>(log_uniform(rng, 16.0, 8192.0));
+  return camera;
+}
+
+void expect_sound(const ImpostorPlan& plan, const BakeQuality& quality) {
+  EXPECT_LE(std::max(plan.frame.width, plan.frame.height), quality.max_resolution);
+  EXPECT_GE(std::min(plan.frame.width, plan.frame.height), 1U);
+  EXPECT_TRUE(std::isfinite(glm::length(plan.frame.slope_min)) && plan.frame.slope_step.x > 0.0);
+  ASSERT_FALSE(plan.layers.empty());
+  for (std::size_t i = 0; i < plan.layers.size(); ++i) {
+    const Layer& layer = plan.layers[i];
+    ASSERT_TRUE(0.0 < layer.near_m && layer.near_m <= layer.distance_m && layer.distance_m <= layer.far_m);
+    ASSERT_TRUE(i == 0 || layer.near_m == plan.layers[i - 1].far_m);
+  }
+}
+
+// Whatever is asked: a sound plan or a reason, the same by the O(1) sketch but for counts at the very cap; and what is baked is gapless.
+TEST(ExtremeCameras, AnyCellAndAnyCameraGetASoundPlanOrAReason) {
+  const Cluster cluster;
+  Rng rng(41);
+  int possible = 0, refused = 0, judged_rays = 0;
+  for (int i = 0; i < 4000; ++i) {
+    const ViewCell cell = any_cell(rng);
+    const Camera camera = any_camera(rng);
+    const BakeQuality quality{.alpha_scale = log_uniform(rng, 0.1, 16.0), .texel_scale = log_uniform(rng, 0.1, 16.0)};
+    SCOPED_TRACE("case " + std::to_string(i));
+    const ImpostorPlan plan = plan_impostor(cluster.bounds(), cell, camera, quality);
+    const double unlimited =
+        sketch_impostor(cluster.bounds(), cell, camera,
+                        {.alpha_scale = quality.alpha_scale, .texel_scale = quality.texel_scale, .max_layers = 4'000'000'000U})
+            .layers;
+    if (plan.possible) {
+      expect_sound(plan, quality);
+      EXPECT_NEAR(unlimited, static_cast<double>(plan.layers.size()), 2.0 + 0.03 * unlimited);
+    } else {
+      EXPECT_STRNE(plan.why_not, "");
+      EXPECT_GT(unlimited, 0.97 * quality.max_layers - 2.0);
+    }
+    ++(plan.possible ? possible : refused);
+    const double texels = static_cast<double>(plan.layers.size()) * plan.frame.width * plan.frame.height;
+    if (!plan.possible || texels > 3e4 || texels < 30.0) continue;
+    const Impostor impostor = bake_layered(cluster.scene, {{0}, cell}, camera, quality);
+    const Verdict verdict = test::judge(cluster.surfaces, impostor, std::min(1.5, quality.alpha_scale * camera.pixel_angle_rad()), 4, 5);
+    EXPECT_EQ(verdict.gaps, 0);
+    judged_rays += verdict.judged;
+  }
+  EXPECT_GT(possible, 1000);
+  EXPECT_GT(refused, 500);
+  EXPECT_GT(judged_rays, 100);
+}
+
 // Sixteen pixels over 150 degrees, and a limit of 16 of them: 421 degrees, which no parallax ever exceeds.
 TEST(ExtremeCameras, AParallaxLimitBeyondAllAnglesIsNone) {
   Camera camera;
