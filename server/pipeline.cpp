@@ -17,6 +17,7 @@
 #include "server/files/output_folder.h"
 #include "server/files/placement_json.h"
 #include "server/job/curves.h"
+#include "server/job/gpu_memory.h"
 #include "server/job/left_out.h"
 #include "server/job/metrics.h"
 #include "server/job/reach.h"
@@ -225,7 +226,7 @@ json select_metrics(const SelectedImpostors& selected, const Placement& placemen
           {"rounds", std::move(rounds)}};
 }
 
-json memory_json(const Placement& placement, const ImpostorSet& set) {
+json memory_json(const Placement& placement, const ImpostorSet& set, json gpu_compression) {
   std::uint64_t texture = 0, geometry = 0;
   for (const auto& impostor : placement.impostors) {
     texture += impostor.texture_bytes;
@@ -235,7 +236,8 @@ json memory_json(const Placement& placement, const ImpostorSet& set) {
           {"geometry_bytes", geometry},
           {"total_bytes", texture + geometry},
           {"atlas_padding_bytes", padding_bytes(set)},
-          {"gpu_bytes", gpu_bytes_json(set.pages)}};
+          {"gpu_bytes", gpu_bytes_json(set.pages)},
+          {"gpu_compression", std::move(gpu_compression)}};
 }
 
 json bound_json(const SelectionSummary& summary) {
@@ -378,6 +380,7 @@ JobOutcome run_place(const JobFiles& files, const JobSpec& spec, const WorkBudge
   place_impostors(job, spec, placed, clock, budget);
   const json curves =
       clock.run("curves", [&] { return curves_json(job, spec, placed.subdivision, placed.selected, placed.set.impostors, clock, budget); });
+  json gpu_compression = clock.run("gpu_compression", [&] { return gpu_compression_json(placed.set.pages, job.world.threads, budget); });
   const VerifyResult verified = clock.run("verify", [&] { return verify(job, placed, spec, budget); });
 
   const json placement = placement_to_json(placement_file(job, placed, spec), job.world.scene);
@@ -395,7 +398,7 @@ JobOutcome run_place(const JobFiles& files, const JobSpec& spec, const WorkBudge
                            {"hopeless", candidates.hopeless}};
   metrics["impostors"] = {{"count", placed.placement.impostors.size()}};
   metrics["select"] = select_metrics(placed.selected, placed.placement);
-  metrics["memory"] = memory_json(placed.placement, placed.set);
+  metrics["memory"] = memory_json(placed.placement, placed.set, std::move(gpu_compression));
   metrics["bound"] = bound_json(placed.selected.selection.summary);
   metrics["curves"] = curves;
   metrics["verify"] = verify_json(verified);

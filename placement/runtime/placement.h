@@ -31,7 +31,7 @@ struct PlacementCpv {
 
 struct PlacementImpostor {
   std::string technique = "layered";
-  std::string guarantee = "nearest";
+  std::string guarantee = "nearest";  // texture filtering for which images keep their promise; "none": a fuzzy impostor's do not
   std::vector<std::uint32_t> objects;
   ViewCell view_cell;
   ImpostorFrame frame;

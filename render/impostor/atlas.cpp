@@ -14,6 +14,7 @@ namespace standin {
 namespace {
 
 constexpr int kDilationTexels = 4;
+constexpr std::uint32_t kWholeBlocks = 4;  // texels a side: graphics interfaces refuse compressed textures of other sizes
 
 struct Block {
   std::uint32_t impostor = 0;
@@ -112,7 +113,7 @@ std::vector<Block> blocks_by_height(const std::vector<Impostor>& impostors, cons
   return blocks;
 }
 
-/// Packs what fits, in order; the page ends where its last block does.
+/// Packs what fits, in order; the page ends where its last block does, or up to three texels further.
 Page pack_page(const std::vector<Block>& blocks, const std::vector<std::size_t>& waiting, std::uint32_t width, std::uint32_t max_height) {
   Page page;
   Skyline skyline(width, max_height);
@@ -122,7 +123,11 @@ Page pack_page(const std::vector<Block>& blocks, const std::vector<std::size_t>&
     page.placed.push_back(placed);
     page.width = std::max(page.width, placed.x + blocks[i].width);
   }
-  page.height = skyline.used_height();
+  const auto whole_blocks = [&](std::uint32_t texels) {
+    return std::min((texels + kWholeBlocks - 1) / kWholeBlocks * kWholeBlocks, max_height);
+  };
+  page.width = whole_blocks(page.width);
+  page.height = whole_blocks(skyline.used_height());
   return page;
 }
 

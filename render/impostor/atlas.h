@@ -1,7 +1,8 @@
 // Texture atlases (thesis 3.6): all quads of a job in as few and as full pages as possible.
 //
-// Pages need not be powers of two; each block has a gutter of one texel on every side that repeats its border, and colour is dilated into
-// transparent texels, so that filtering at a border never sees black. Packing is deterministic.
+// Pages need not be powers of two, but hold whole blocks of 4 x 4 texels, as compressed formats want them; each block of a quad has a
+// gutter of one texel on every side that repeats its border, and colour is dilated into transparent texels, so that filtering at a border
+// never sees black. Packing is deterministic.
 #pragma once
 
 #include "render/impostor/impostor.h"

@@ -40,6 +40,7 @@ Impostor bake_layered(const Scene& scene, const TexturePyramids& textures, const
                       const BakeQuality& quality, const WorkBudget& budget) {
   const Recording recording = record_request(scene, textures, request, camera, quality, budget);
   Impostor impostor{request.objects, request.view_cell, recording.frame, recording.layers, {}, {}, {}, Technique::kLayered};
+  impostor.fuzzy = recording.fuzzy;
   cut_into_quads(recording.images, quality, budget, impostor);
   return impostor;
 }

@@ -24,6 +24,7 @@ struct BakeQuality {
   std::uint32_t max_resolution = 4096;  // texels a side
   std::uint32_t grid_texels = 8;        // box growing (thesis 3.5)
   double fill_ratio = 0.8;
+  bool fuzzy = false;      // masked surfaces without their outlines: no promise for what holds them (recorder.h, Coverage::kFuzzy)
   bool strict = true;      // layer set-up; false only for tests
   bool leave_out = true;   // what cannot change the result: culling of a single layer, texturing of untextured surfaces; false: for tests
   bool supercover = true;  // closed coverage; false (centre sampling) only for tests

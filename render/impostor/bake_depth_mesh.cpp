@@ -28,17 +28,16 @@ VoxelLattice lattice_of(const std::vector<LayerImage>& images, int ring) {
 DepthMeshImpostor bake_depth_mesh(const Scene& scene, const TexturePyramids& textures, const BakeRequest& request, const Camera& camera,
                                   const BakeQuality& quality, const DepthMeshQuality& mesh_quality, const WorkBudget& budget) {
   DepthMeshSummary summary;
-  const Recording recording =
-      timed(summary.record_s, [&] { return record_request(scene, textures, request, camera, quality, budget); });
+  const Recording recording = timed(summary.record_s, [&] { return record_request(scene, textures, request, camera, quality, budget); });
   VoxelLattice lattice;
   const DepthMesh initial = timed(summary.mesh_s, [&] {
     lattice = lattice_of(recording.images, mesh_quality.ring);
     return initial_depth_mesh(lattice, Sheets::kSeen);
   });
-  const SimplifiedMesh simplified = timed(summary.simplify_s, [&] {
-    return simplify(initial, lattice, lattice_depths(recording.layers), mesh_quality.enlargement, budget);
-  });
+  const SimplifiedMesh simplified = timed(
+      summary.simplify_s, [&] { return simplify(initial, lattice, lattice_depths(recording.layers), mesh_quality.enlargement, budget); });
   Impostor impostor{request.objects, request.view_cell, recording.frame, recording.layers, {}, {}, {}, Technique::kDepthMesh};
+  impostor.fuzzy = recording.fuzzy;
   impostor.mesh = timed(summary.texture_s, [&] {
     return textured(simplified, recording.images, lattice, recording.frame, recording.layers,
                     {.texels_per_voxel = mesh_quality.texels_per_voxel}, impostor.texels);

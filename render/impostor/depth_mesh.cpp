@@ -21,7 +21,9 @@ Cell beside(const Cell& cell, const Cell& side) {
 class Rules {
  public:
   Rules(const VoxelLattice& lattice, Sheets sheets)
-      : lattice_(lattice), all_(sheets == Sheets::kAll), columns_(2 * static_cast<int>(lattice.width) - 1),
+      : lattice_(lattice),
+        all_(sheets == Sheets::kAll),
+        columns_(2 * static_cast<int>(lattice.width) - 1),
         rows_(2 * static_cast<int>(lattice.height) - 1) {}
 
   [[nodiscard]] bool opaque(const Cell& c, int layer) const { return has_layer(layer) && every_voxel(at(layer).opaque, c); }
@@ -151,9 +153,11 @@ class Mesher {
 
   void add_flat(const Cell& c, int layer) {
     const std::int32_t depth = 2 * layer;
-    mesh_.polygons.push_back({{vertex_(c.x, c.y, depth), vertex_(c.x, c.y + 1, depth), vertex_(c.x + 1, c.y + 1, depth),
-                               vertex_(c.x + 1, c.y, depth)},
-                              c.x, c.y, layer});
+    mesh_.polygons.push_back(
+        {{vertex_(c.x, c.y, depth), vertex_(c.x, c.y + 1, depth), vertex_(c.x + 1, c.y + 1, depth), vertex_(c.x + 1, c.y, depth)},
+         c.x,
+         c.y,
+         layer});
     ++mesh_.flats;
   }
 
@@ -161,9 +165,10 @@ class Mesher {
     const std::int32_t x0 = c.x + (side.x > 0 || side.y > 0), x1 = c.x + (side.x > 0 || side.y < 0);
     const std::int32_t y0 = c.y + (side.y > 0 || side.x < 0), y1 = c.y + (side.y > 0 || side.x > 0);
     for (const std::int32_t depth : {2 * layer - 2, 2 * layer - 1})
-      mesh_.polygons.push_back(
-          {{vertex_(x0, y0, depth), vertex_(x1, y1, depth), vertex_(x1, y1, depth + 1), vertex_(x0, y0, depth + 1)},
-           c.x, c.y, (depth + 1) / 2});
+      mesh_.polygons.push_back({{vertex_(x0, y0, depth), vertex_(x1, y1, depth), vertex_(x1, y1, depth + 1), vertex_(x0, y0, depth + 1)},
+                                c.x,
+                                c.y,
+                                (depth + 1) / 2});
     ++mesh_.walls;
   }
 

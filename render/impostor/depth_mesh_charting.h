@@ -1,8 +1,8 @@
 // Which triangles of a depth mesh share a block of texels, and where they lie in it (see depth_mesh_texture.h).
 #pragma once
 
-#include "render/impostor/impostor.h"
 #include "render/impostor/depth_mesh_simplify.h"
+#include "render/impostor/impostor.h"
 
 namespace standin {
 

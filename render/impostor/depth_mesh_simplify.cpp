@@ -80,7 +80,10 @@ class EdgeQueue {
 class Simplifier {
  public:
   Simplifier(const DepthMesh& mesh, const VoxelLattice& lattice, const LatticeDepths& depths, double enlargement)
-      : complex_(mesh), cover_(lattice, depths, enlargement), exact_(lattice, depths, 1.0), depths_(depths),
+      : complex_(mesh),
+        cover_(lattice, depths, enlargement),
+        exact_(lattice, depths, 1.0),
+        depths_(depths),
         owners_(2 * static_cast<std::uint32_t>(mesh.polygons.size())) {
     reduce_flat_parts(complex_);
     give_voxels(voxels_of(mesh, lattice));
@@ -159,7 +162,8 @@ class Simplifier {
         first = std::min(first, complex_.position(v).depth);
         last = std::max(last, complex_.position(v).depth);
       }
-      for (std::int32_t layer = first / 2; layer <= (last + 1) / 2; ++layer) give_voxels(t, triangle, static_cast<std::uint32_t>(layer), voxels);
+      for (std::int32_t layer = first / 2; layer <= (last + 1) / 2; ++layer)
+        give_voxels(t, triangle, static_cast<std::uint32_t>(layer), voxels);
     }
   }
 
@@ -281,9 +285,9 @@ class Simplifier {
   VoxelOwners owners_;
   EdgeQueue queue_;
   std::vector<Neighbour> of_removed_, of_kept_, around_;
-  std::vector<std::uint32_t> star_;                            // of the vertex to be removed
-  std::vector<std::uint32_t> new_ids_;                         // its surviving triangles
-  std::vector<CoverTriangle> new_triangles_;                   // as they would be
+  std::vector<std::uint32_t> star_;           // of the vertex to be removed
+  std::vector<std::uint32_t> new_ids_;        // its surviving triangles
+  std::vector<CoverTriangle> new_triangles_;  // as they would be
   std::vector<std::uint32_t> voxels_, new_owners_;
 };
 

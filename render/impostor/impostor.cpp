@@ -33,6 +33,10 @@ std::optional<Technique> technique_named(std::string_view name) {
   return std::nullopt;
 }
 
+std::string_view guarantee_name(const Impostor& impostor) {
+  return impostor.fuzzy ? "none" : "nearest";
+}
+
 TexturedMesh textured_mesh(const Impostor& impostor) {
   if (impostor.technique == Technique::kDepthMesh) return impostor.mesh;
   TexturedMesh mesh;

@@ -89,11 +89,15 @@ struct Impostor {
   std::vector<std::uint8_t> texels;
   TexturedMesh mesh{};
   Technique technique = Technique::kLayered;
+  bool fuzzy = false;  // outlines of its masked surfaces were left out: it may show gaps
 
   [[nodiscard]] std::uint64_t texel_count() const { return texels.size() / 4; }
   /// Shows nothing.
   [[nodiscard]] bool empty() const { return quads.empty() && mesh.charts.empty(); }
 };
+
+/// "nearest": gapless and free of parallax error at nearest-texel sampling; "none": fuzzy, and gapless perhaps.
+[[nodiscard]] std::string_view guarantee_name(const Impostor& impostor);
 
 /// One chart for each quad (corners from the upper left, counter-clockwise as the viewer sees them), or the mesh itself.
 [[nodiscard]] TexturedMesh textured_mesh(const Impostor& impostor);

@@ -17,6 +17,7 @@ namespace standin {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kMostParallaxRad = 1.5;  // the layers' formulas need less than a right angle; coarse images may allow more
 
 /// The view cell as a reference viewpoint sees it; see LayerSetup for the terms.
 struct Viewpoint {
@@ -149,7 +150,7 @@ Draft draft_of(const Viewpoint& viewpoint, const Extent& extent, const Camera& c
                  .t0 = t0,
                  .depth = extent.depth_max - extent.depth_min,
                  .resolution = glm::max(2.0 * largest_slope / texel, Vec2(1.0)),
-                 .alpha_rad = quality.alpha_scale * camera.pixel_angle_rad(),
+                 .alpha_rad = std::min(quality.alpha_scale * camera.pixel_angle_rad(), kMostParallaxRad),
                  .strict = quality.strict};
   return draft;
 }
@@ -192,10 +193,17 @@ Choice fitted_to(const Choice& by_box, std::span<const Vec3> points, const Camer
   return choice;
 }
 
-ImpostorPlan with_layers(const Draft& draft, std::uint32_t max_layers) {
+/// More layers than this estimate says are certainly too many: it is off by a few (layers.h).
+bool surely_more_than(std::uint32_t max_layers, double estimated_layers) {
+  return estimated_layers > 16.0 + 1.25 * max_layers;
+}
+
+ImpostorPlan with_layers(const Choice& choice, std::uint32_t max_layers) {
+  const Draft& draft = choice.draft;
   ImpostorPlan plan;
   plan.why_not = draft.why_not;
   if (!draft.possible()) return plan;
+  if (surely_more_than(max_layers, choice.layers)) return plan.why_not = "too many layers", plan;
   const auto layers = layer_distances(draft.setup, max_layers);
   if (!layers) return plan.why_not = "too many layers", plan;
   plan.possible = true;
@@ -222,12 +230,12 @@ ImpostorSketch sketch_of(const Choice& choice, const Box& object_bounds, std::ui
 }  // namespace
 
 ImpostorPlan plan_impostor(const Box& object_bounds, const ViewCell& cell, const Camera& camera, const BakeQuality& quality) {
-  return with_layers(choose_viewpoint(object_bounds, cell, camera, quality).draft, quality.max_layers);
+  return with_layers(choose_viewpoint(object_bounds, cell, camera, quality), quality.max_layers);
 }
 
 ImpostorPlan plan_impostor(const Box& object_bounds, std::span<const Vec3> points, const ViewCell& cell, const Camera& camera,
                            const BakeQuality& quality) {
-  return with_layers(fitted_to(choose_viewpoint(object_bounds, cell, camera, quality), points, camera, quality).draft, quality.max_layers);
+  return with_layers(fitted_to(choose_viewpoint(object_bounds, cell, camera, quality), points, camera, quality), quality.max_layers);
 }
 
 ImpostorSketch sketch_impostor(const Box& object_bounds, const ViewCell& cell, const Camera& camera, const BakeQuality& quality) {

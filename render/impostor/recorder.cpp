@@ -74,7 +74,7 @@ class Recorder {
         textures_(textures),
         frame_(frame),
         layers_(layers),
-        closed_(coverage == Coverage::kClosed),
+        coverage_(coverage),
         texture_all_(texturing == Texturing::kEverywhere),
         rows_(frame.width, frame.height),
         images_(layers.size(), LayerImage(frame.width, frame.height)) {}
@@ -158,7 +158,7 @@ class Recorder {
     bool at_centre = found.has_value();
     const TexturePyramid* mask = surface.mask();
     if (at_centre && mask != nullptr) at_centre = mask->passes(triangle.attributes.uv_at(found->barycentric));
-    if (!at_centre && (!closed_ || holds_centre(images_[layer].get(x, y)))) return;
+    if (!at_centre && (!draws_outline(surface) || holds_centre(images_[layer].get(x, y)))) return;
     if (!found) found = outline_point(centre, piece);
     if (!at_centre && mask != nullptr && !mask_may_pass(x, y, piece, triangle.attributes, *mask, *found)) return;
 
@@ -167,6 +167,11 @@ class Recorder {
     if (texel.opaque() && texel.order <= order) return;
     texel.order = order;
     texel.rgba = surface.colour(triangle.attributes, found->barycentric, level_of_detail(plane, triangle.attributes, surface, *found));
+  }
+
+  /// Whether texels count that the surface only touches.
+  [[nodiscard]] bool draws_outline(const Surface& surface) const {
+    return coverage_ == Coverage::kClosed || (coverage_ == Coverage::kFuzzy && surface.mask() == nullptr);
   }
 
   /// The surface at the texel's centre, if the triangle and the layer hold it.
@@ -219,7 +224,7 @@ class Recorder {
   const TexturePyramids& textures_;
   const ImpostorFrame& frame_;
   std::span<const Layer> layers_;
-  bool closed_;
+  Coverage coverage_;
   bool texture_all_;
   ClosedCoverage rows_;
   std::vector<LayerImage> images_;

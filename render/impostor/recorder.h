@@ -5,8 +5,8 @@
 // layer a surface that holds the texel's centre wins over one that only touches the texel, and of two such the nearer; so a layer looks as
 // if drawn by a graphics device, plus a rim.
 //
-// Masked surfaces are drawn where any part of the texel may be opaque. Both faces of a surface are recorded even where a device would cull
-// one: rays hit both, and what is hidden behind a front face is culled afterwards anyway.
+// Masked surfaces are drawn where any part of the texel may be opaque, unless the coverage is fuzzy. Both faces of a surface are recorded
+// even where a device would cull one: rays hit both, and what is hidden behind a front face is culled afterwards anyway.
 #pragma once
 
 #include <span>
@@ -19,7 +19,9 @@
 
 namespace standin {
 
-enum class Coverage { kClosed, kCentre };  // centre sampling is for tests: it leaves gaps
+/// kFuzzy: closed but for masked surfaces, which are drawn only where a texel's centre meets an opaque point of theirs. On average that is
+/// as much as there is to see, so leaves do not grow together; what the centres miss are gaps (thesis 3.7.1). kCentre is for tests.
+enum class Coverage { kClosed, kFuzzy, kCentre };
 /// kEverywhere, for tests: surfaces without texture are given one white texel and go the way of textured ones, to the same bytes.
 enum class Texturing { kWhereTextured, kEverywhere };
 

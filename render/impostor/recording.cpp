@@ -1,5 +1,6 @@
 #include "render/impostor/recording.h"
 
+#include <algorithm>
 #include <string>
 
 #include "render/base/error.h"
@@ -33,6 +34,19 @@ std::vector<Vec3> world_vertices(const Scene& scene, std::span<const std::uint32
   return points;
 }
 
+bool holds_masked(const Scene& scene, std::span<const std::uint32_t> objects) {
+  return std::any_of(objects.begin(), objects.end(), [&](std::uint32_t id) {
+    const auto first = scene.parts.begin() + static_cast<std::ptrdiff_t>(scene.objects[id].first_part);
+    return std::any_of(first, first + static_cast<std::ptrdiff_t>(scene.objects[id].part_count),
+                       [&](const Part& part) { return scene.materials[part.material].alpha_mode == AlphaMode::kMask; });
+  });
+}
+
+Coverage coverage_of(const BakeQuality& quality) {
+  if (!quality.supercover) return Coverage::kCentre;
+  return quality.fuzzy ? Coverage::kFuzzy : Coverage::kClosed;
+}
+
 }  // namespace
 
 Recording record_request(const Scene& scene, const TexturePyramids& textures, const BakeRequest& request, const Camera& camera,
@@ -44,9 +58,9 @@ Recording record_request(const Scene& scene, const TexturePyramids& textures, co
     throw Failure(ErrorWord::kImpostorImpossible, "impostor of " + std::to_string(request.objects.size()) + " objects from object " +
                                                       std::to_string(request.objects.front()) + " on: " + plan.why_not);
   return {plan.frame, plan.layers,
-          record_layers(scene, textures, request.objects, plan.frame, plan.layers,
-                        quality.supercover ? Coverage::kClosed : Coverage::kCentre, budget,
-                        quality.leave_out ? Texturing::kWhereTextured : Texturing::kEverywhere)};
+          record_layers(scene, textures, request.objects, plan.frame, plan.layers, coverage_of(quality), budget,
+                        quality.leave_out ? Texturing::kWhereTextured : Texturing::kEverywhere),
+          quality.fuzzy && holds_masked(scene, request.objects)};
 }
 
 BitImage opaque_texels(const LayerImage& image) {

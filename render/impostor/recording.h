@@ -11,6 +11,7 @@ struct Recording {
   ImpostorFrame frame;
   std::vector<Layer> layers;
   std::vector<LayerImage> images;  // one a layer
+  bool fuzzy = false;              // without the outlines of masked surfaces, of which there are some
 };
 
 /// Throws Failure(kBadUsage) for a request that names no object or one that is not there, Failure(kImpostorImpossible) where no plan is

@@ -14,6 +14,7 @@
 #include "render/scene/load.h"
 #include "server/command_line/commands.h"
 #include "server/files/output_folder.h"
+#include "server/job/gpu_memory.h"
 #include "server/job/world.h"
 
 namespace standin {
@@ -99,15 +100,19 @@ int bake_command(const CommandContext& context) {
                     {"spec", to_json(context.spec, true)}};
   OutputFolder folder(arguments.output, job.dump());
   Impostor impostor = bake_layered(scene, request, camera_of(context.spec), quality_of(context.spec, ViewSpaceKind::kWalk), context.budget);
-  const json metrics = {{"layers", impostor.layers.size()},
-                        {"quads", impostor.quads.size()},
-                        {"resolution", {impostor.frame.width, impostor.frame.height}},
-                        {"texels", impostor.texel_count()},
-                        {"texture_bytes", texture_bytes(impostor)},
-                        {"geometry_bytes", geometry_bytes(impostor)}};
+  json metrics = {{"guarantee", guarantee_name(impostor)},
+                  {"layers", impostor.layers.size()},
+                  {"quads", impostor.quads.size()},
+                  {"resolution", {impostor.frame.width, impostor.frame.height}},
+                  {"texels", impostor.texel_count()},
+                  {"texture_bytes", texture_bytes(impostor)},
+                  {"geometry_bytes", geometry_bytes(impostor)}};
   std::vector<Impostor> impostors;
   impostors.push_back(std::move(impostor));
-  folder.write("impostors.glb", encode_impostor_glb(pack_atlas(std::move(impostors))));
+  const ImpostorSet set = pack_atlas(std::move(impostors));
+  metrics["gpu_bytes"] = gpu_bytes_json(set.pages);
+  metrics["gpu_compression"] = gpu_compression_json(set.pages, thread_count(context.spec), context.budget);
+  folder.write("impostors.glb", encode_impostor_glb(set));
   folder.write("metrics.json", metrics.dump(2));
   folder.commit();
   std::cout << metrics.dump(arguments.json ? 2 : -1) << "\n";

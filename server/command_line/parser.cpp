@@ -35,13 +35,21 @@ struct Builder {
         for (const auto& text : texts) given->emplace_back(row, text);
         return true;
       };
-      app.add_option(field.flag, apply, field.help + "  [" + field.key + ", default " + field.get(JobSpec{}).dump() + "]")
-          ->expected(1)
-          ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+      const std::string help = field.help + "  [" + field.key + ", default " + field.get(JobSpec{}).dump() + "]";
+      if (field.schema.at("type") == "boolean") {
+        yes_or_no(field, help);
+        continue;
+      }
+      app.add_option(field.flag, apply, help)->expected(1)->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
     }
     app.add_option("--config", config, "TOML file with settings; flags win over it");
     print_and_exit("--print-config", print_config, "print the complete effective settings as JSON and exit");
     print_and_exit("--print-schema", print_schema, "print the JSON Schema of a configuration and exit");
+  }
+  // "--flag" or "--flag=true", and "--flag=false" against a configuration file.
+  void yes_or_no(const SpecField& field, const std::string& help) {
+    const auto apply = [given = &flags, row = &field](std::int64_t count) { given->emplace_back(row, count > 0 ? "true" : "false"); };
+    app.add_flag_function(field.flag, apply, help);
   }
   // As with --help, arguments may be missing: CLI11 asks for them after its callbacks have run, in the order of definition.
   void print_and_exit(const std::string& flag, bool& print, const std::string& help) {

@@ -24,6 +24,7 @@ PlacementImpostor describe(const BakedCandidate& baked, const TimeModel& model, 
   described.frame = impostor.frame;
   described.layers = impostor.layers;
   described.technique = technique_name(impostor.technique);
+  described.guarantee = guarantee_name(impostor);
   described.quads = static_cast<std::uint32_t>(baked.cost.quads);
   described.texels = static_cast<std::uint64_t>(baked.cost.texels);
   described.texture_bytes = texture_bytes(impostor);

@@ -15,6 +15,8 @@ template <class T>
 json type_schema() {
   if constexpr (std::is_same_v<T, std::string>)
     return {{"type", "string"}};
+  else if constexpr (std::is_same_v<T, bool>)
+    return {{"type", "boolean"}};
   else if constexpr (std::is_floating_point_v<T>)
     return {{"type", "number"}};
   else if constexpr (std::is_integral_v<T>)
@@ -133,6 +135,8 @@ std::vector<SpecField> make_fields() {
       field("impostors.texel_scale", "--texel-scale", &JobSpec::texel_scale, "texel size in centre pixels", between(0.1, 16.0)),
       field("impostors.max_layers", "--max-layers", &JobSpec::max_layers, "layers an impostor may have; 0: 200 for walk, 400 for orbit",
             between(0, 10'000)),
+      field("impostors.fuzzy", "--fuzzy", &JobSpec::fuzzy,
+            "masked surfaces (leaves) without their outlines: trees stay as airy as they are, but impostors that hold them may show gaps"),
       field("select.exchange_rounds", "--exchange-rounds", &JobSpec::exchange_rounds, "rounds of exchange after reverse-delete",
             between(0, 100)),
       field("select.bound_iterations", "--bound-iterations", &JobSpec::bound_iterations,
@@ -164,7 +168,8 @@ void check_type(const json& schema, const json& value, const std::string& place)
   const bool ok = (type == "string" && value.is_string()) || (type == "number" && value.is_number()) ||
                   (type == "integer" &&
                    (value.is_number_integer() || (value.is_number_float() && value.get<double>() == std::floor(value.get<double>())))) ||
-                  (type == "array" && value.is_array()) || (type == "object" && value.is_object());
+                  (type == "boolean" && value.is_boolean()) || (type == "array" && value.is_array()) ||
+                  (type == "object" && value.is_object());
   if (!ok) reject(place, value, "a value of type " + type + ", got " + type_of(value));
 }
 

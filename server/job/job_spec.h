@@ -49,6 +49,7 @@ struct JobSpec {
   double alpha_scale = 1.0;
   double texel_scale = 1.0;
   std::uint32_t max_layers = 0;  // 0: 200 for walk, 400 for orbit
+  bool fuzzy = false;            // masked surfaces without outlines: no image promise where they are
   int exchange_rounds = 0;
   int bound_iterations = 100;
   int bake_rounds = 10;

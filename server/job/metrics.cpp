@@ -108,13 +108,6 @@ json causes_json(const World& world, const Subdivision& subdivision, const TimeM
           {"objects", objects_json(world, largest_terms(std::move(objects), 20))}};
 }
 
-json gpu_bytes_json(const std::vector<Texture>& pages) {
-  std::uint64_t blocks = 0;
-  for (const auto& page : pages)
-    blocks += static_cast<std::uint64_t>((page.width + 3) / 4) * static_cast<std::uint64_t>((page.height + 3) / 4);
-  return {{"bc1", 8 * blocks}, {"bc3", 16 * blocks}, {"bc7", 16 * blocks}, {"etc2_rgb8a1", 8 * blocks}, {"etc2_rgba8", 16 * blocks}};
-}
-
 json slow_views_json(const std::vector<SlowView>& slow) {
   json list = json::array();
   for (const SlowView& one : slow) {

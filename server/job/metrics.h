@@ -1,4 +1,4 @@
-// Parts of metrics.json that need more than a copy: heat map, causes, bytes on a GPU. Units in the key names, as everywhere in that file.
+// Parts of metrics.json that need more than a copy: heat map, causes. Units in the key names, as everywhere in that file.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -28,10 +28,6 @@ namespace standin {
 [[nodiscard]] std::vector<RegionTerm> largest_terms(std::vector<RegionTerm> terms, std::size_t count);
 /// [{object, name, ms}]
 [[nodiscard]] nlohmann::json objects_json(const World& world, const std::vector<RegionTerm>& terms);
-
-/// Bytes of the atlas pages in each block-compressed format a GPU may hold them in: blocks of 4 x 4 texels, without mip levels. Computed
-/// from the pages' sizes; nothing is compressed.
-[[nodiscard]] nlohmann::json gpu_bytes_json(const std::vector<Texture>& pages);
 
 [[nodiscard]] std::uint64_t peak_rss_bytes();
 

@@ -151,6 +151,7 @@ BakeQuality quality_of(const JobSpec& spec, ViewSpaceKind view_space) {
   BakeQuality quality;
   quality.alpha_scale = spec.alpha_scale;
   quality.texel_scale = spec.texel_scale;
+  quality.fuzzy = spec.fuzzy;
   const std::uint32_t by_view_space = view_space == ViewSpaceKind::kOrbit ? 400 : 200;
   quality.max_layers = spec.max_layers > 0 ? spec.max_layers : by_view_space;
   return quality;

@@ -1,7 +1,6 @@
 #include "server/verify/impostor_judge.h"
 
 #include <algorithm>
-#include <numeric>
 
 #include "server/verify/impostor_rays.h"
 
@@ -10,9 +9,14 @@ namespace {
 
 constexpr std::uint32_t kViewsPerImpostor = 4;  // one of each kind that sample_cell_views offers
 
+bool promises(const PlacementImpostor& impostor) {
+  return impostor.guarantee != "none";
+}
+
 std::vector<std::uint32_t> by_layer_count(const std::vector<PlacementImpostor>& impostors) {
-  std::vector<std::uint32_t> order(impostors.size());
-  std::iota(order.begin(), order.end(), 0U);
+  std::vector<std::uint32_t> order;
+  for (std::uint32_t id = 0; id < impostors.size(); ++id)
+    if (promises(impostors[id])) order.push_back(id);
   std::stable_sort(order.begin(), order.end(),
                    [&](std::uint32_t a, std::uint32_t b) { return impostors[a].layers.size() < impostors[b].layers.size(); });
   return order;
@@ -47,8 +51,13 @@ void judge_impostors(const VerifyInput& input, const GlbQuads& glb, const Verify
     result.left_out.emplace_back(impostors.empty() ? "judging by rays: there is no impostor" : "judging by rays: no views were asked for");
     return;
   }
+  const std::vector<std::uint32_t> promising = by_layer_count(impostors);
+  if (promising.size() < impostors.size())
+    result.left_out.push_back("judging by rays: " + std::to_string(impostors.size() - promising.size()) +
+                              " fuzzy impostors, which promise nothing");
+  if (promising.empty()) return;
   const std::size_t wanted = std::max(1U, options.judged_views / kViewsPerImpostor);
-  const std::vector<std::uint32_t> chosen = evenly_spaced(by_layer_count(impostors), wanted);
+  const std::vector<std::uint32_t> chosen = evenly_spaced(promising, wanted);
   for (std::size_t i = 0; i < chosen.size(); ++i) {
     budget.check();
     budget.report("verify: rays", static_cast<double>(result.judged_views) / options.judged_views);
@@ -64,8 +73,8 @@ void judge_impostors(const VerifyInput& input, const GlbQuads& glb, const Verify
     result.baseless_pixels += judgement.baseless_pixels;
     result.max_parallax_ratio = std::max(result.max_parallax_ratio, judgement.max_parallax_ratio);
   }
-  if (chosen.size() < impostors.size())
-    result.left_out.push_back("judging by rays: a sample of " + std::to_string(chosen.size()) + " of " + std::to_string(impostors.size()) +
+  if (chosen.size() < promising.size())
+    result.left_out.push_back("judging by rays: a sample of " + std::to_string(chosen.size()) + " of " + std::to_string(promising.size()) +
                               " impostors");
 }
 

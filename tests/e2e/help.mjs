@@ -26,6 +26,7 @@ function schemaKeys() {
 /** A value other than the default that the schema allows, as a flag's text. */
 function otherValue(setting) {
   if (setting.enum) return setting.enum.find((word) => word !== setting.default) ?? setting.default;
+  if (setting.type === "boolean") return String(!setting.default);
   if (setting.type === "string") return setting.pattern ? "orbit" : "cm";
   if (setting.type === "array") return setting.items.type === "number" ? "33,44" : (setting.items.enum?.[0] ?? "word");
   const least = setting.exclusiveMinimum ?? setting.minimum ?? 0;
@@ -50,9 +51,9 @@ test("every offered flag sets its key", () => {
     for (const [key, flag] of settingsOf(command)) {
       const setting = keys.get(key);
       const value = otherValue(setting);
-      const config = JSON.parse(expectExit(0, command, flag, value, "--print-config").out);
+      const config = JSON.parse(expectExit(0, command, ...(setting.type === "boolean" ? [`${flag}=${value}`] : [flag, value]), "--print-config").out);
       const now = key.split(".").reduce((section, name) => section[name], config);
-      const wanted = setting.type === "string" ? value : setting.type !== "array" ? Number(value) : setting.items.type === "number" ? [33, 44] : [value];
+      const wanted = setting.type === "string" ? value : setting.type === "boolean" ? value === "true" : setting.type !== "array" ? Number(value) : setting.items.type === "number" ? [33, 44] : [value];
       assert.deepEqual(now, wanted, `standin ${command} ${flag} ${value}`);
     }
 });

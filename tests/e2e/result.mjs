@@ -113,10 +113,17 @@ test("curves of error against run time, and the atlases' bytes in GPU formats", 
   assert.ok(Math.abs(last.work - metrics.memory.texture_bytes) < 1e-6 * last.work, "the finest bake is the one that ships");
   assert.equal(metrics.curves.bake_rounds.at(-1).error, metrics.memory.texture_bytes);
 
-  const { bc1, bc3, bc7, etc2_rgb8a1, etc2_rgba8 } = metrics.memory.gpu_bytes;
+  const { rgba8, bc1, bc3, bc7, etc2_rgb8a1, etc2_rgba8 } = metrics.memory.gpu_bytes;
+  assert.equal(rgba8, atlasSizes().reduce((sum, [width, height]) => sum + 4 * width * height, 0));
+  assert.equal(rgba8, metrics.memory.texture_bytes + metrics.memory.atlas_padding_bytes);
   assert.deepEqual([bc3, bc7, etc2_rgb8a1, etc2_rgba8], [2 * bc1, 2 * bc1, bc1, 2 * bc1]);
   const blocks = atlasSizes().map(([width, height]) => Math.ceil(width / 4) * Math.ceil(height / 4));
   assert.equal(bc7, 16 * blocks.reduce((sum, count) => sum + count, 0), "16 bytes a block of 4 x 4 texels");
+  for (const format of ["bc1", "bc3"]) {
+    const { alpha_exact, alpha_changed_texels, opaque_psnr_db, mean_error, seconds } = metrics.memory.gpu_compression[format];
+    assert.deepEqual([alpha_exact, alpha_changed_texels], [true, 0], `${format}: no hole, no fin`);
+    assert.ok(opaque_psnr_db > 25 && mean_error > 0 && mean_error < 0.05 && seconds > 0, `${format}: ${opaque_psnr_db} dB, ${mean_error}`);
+  }
 });
 
 test("images keep their guarantee", () => {

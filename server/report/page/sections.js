@@ -53,13 +53,22 @@ function framesSection({ metrics }) {
   return section("frames", "Frame times before and after", lead, element("figure", {}, chart), table(columns, curves, "Frame time percentiles"));
 }
 
+/// "atlases as BC1 on a GPU (masks kept exactly, PSNR 38.1 dB)"; formats that were not tried say where their size comes from.
+function gpuFormat(format, tried) {
+  const name = `atlases as ${format.toUpperCase().replace("_", " ")} on a GPU`;
+  if (format === "rgba8") return name;
+  if (!tried) return `${name} (computed from their size)`;
+  const masks = tried.alpha_exact ? "masks kept exactly" : `${count(tried.alpha_changed_texels)} texels change their mask`;
+  return `${name} (${masks}, ${isNumber(tried.opaque_psnr_db) ? `PSNR ${significant(tried.opaque_psnr_db, 3)} dB` : "no colour differs"})`;
+}
+
 function memorySection({ metrics, impostors }) {
   if (impostors.length === 0) return null;
   const memory = metrics.memory || {}, bound = metrics.bound || {};
   const rows = [
     ["textures, with gutters (the objective)", bytes(memory.texture_bytes)], ["geometry", bytes(memory.geometry_bytes)],
     ["unused space in the atlases", bytes(memory.atlas_padding_bytes)], ["total", bytes(memory.total_bytes)],
-    ...Object.entries(memory.gpu_bytes || {}).map(([format, value]) => [`atlases as ${format.toUpperCase().replace("_", " ")} on a GPU (computed from their size)`, bytes(value)]),
+    ...Object.entries(memory.gpu_bytes || {}).map(([format, value]) => [gpuFormat(format, (memory.gpu_compression || {})[format]), bytes(value)]),
     ["lower bound: no choice of these candidates needs less", bytes(bound.memory_lower_bound_bytes)],
     ["gap to the lower bound", percent(bound.gap)],
   ].filter(([, value]) => value !== NONE);

@@ -46,6 +46,7 @@ TEST(Atlas, BlocksWithGuttersDoNotOverlap) {
   std::vector<std::vector<char>> taken;
   for (const Texture& page : set.pages) {
     EXPECT_LE(std::max(page.width, page.height), 256);
+    EXPECT_TRUE(page.width % 4 == 0 && page.height % 4 == 0) << "whole blocks of compressed formats";
     taken.emplace_back(page.rgba.size() / 4, 0);
   }
   for (std::size_t i = 0; i < set.impostors.size(); ++i)

@@ -120,6 +120,67 @@ TEST(Promise, HoldsForMaskedSurfaces) {
   EXPECT_GT(masked_pixels, 200);
 }
 
+/// Texels of the image that show something in any layer: what the impostor shows of itself from its reference viewpoint.
+std::vector<bool> shown_columns(const Impostor& impostor) {
+  const test::DrawnImpostor drawn(impostor);
+  std::vector<bool> shown;
+  for (std::uint32_t y = 0; y < impostor.frame.height; ++y)
+    for (std::uint32_t x = 0; x < impostor.frame.width; ++x) {
+      bool any = false;
+      for (std::size_t layer = 0; layer < impostor.layers.size(); ++layer) any = any || drawn.texel(layer, x, y)[3] != 0;
+      shown.push_back(any);
+    }
+  return shown;
+}
+
+/// Where rays from the reference viewpoint through the texels' centres hit the original.
+std::vector<bool> hit_columns(const Case& c, const ImpostorFrame& frame) {
+  std::vector<bool> hit;
+  for (std::uint32_t y = 0; y < frame.height; ++y)
+    for (std::uint32_t x = 0; x < frame.width; ++x) {
+      const Vec3 direction = layer_point(frame, 1.0, x + 0.5, y + 0.5) - frame.reference_viewpoint;
+      hit.push_back(test::first_hit(c.surfaces, frame.reference_viewpoint, direction).has_value());
+    }
+  return hit;
+}
+
+// Leaves grow by their outlines. Without them an impostor shows, from its reference viewpoint, what rays see and nothing else: no growth at
+// all. The price is gaps, and so no promise; and what more is seen through it is
+// no longer culled.
+TEST(Promise, FuzzyFoliageDoesNotGrowAndPromisesNothing) {
+  int gaps = 0, judged_pixels = 0;
+  for (std::uint64_t seed = 61; seed <= 64; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    const Texture mask = random_mask(seed, 13, 32, 0.2);
+    const Case c = masked_case(seed, 60, 8.0, mask);
+    const ViewCell cell = shaft_cell(0.2, 20.0);
+    Camera camera;
+    camera.width = camera.height = 256;
+    const Impostor strict = bake_layered(c.scene, {{0}, cell}, camera, {});
+    const Impostor fuzzy = bake_layered(c.scene, {{0}, cell}, camera, {.fuzzy = true});
+    EXPECT_EQ(guarantee_name(strict), "nearest");
+    EXPECT_EQ(guarantee_name(fuzzy), "none");
+    const auto hit = hit_columns(c, fuzzy.frame), shown = shown_columns(fuzzy), grown = shown_columns(strict);
+    EXPECT_EQ(shown, hit);
+    const auto hits = std::count(hit.begin(), hit.end(), true), all = std::count(grown.begin(), grown.end(), true);
+    EXPECT_GT(all, hits * 5 / 4);
+    for (std::size_t i = 0; i < hit.size(); ++i) EXPECT_TRUE(grown[i] || !hit[i]);
+    const Verdict verdict = judged(c, cell, {.fuzzy = true}, seed);
+    gaps += verdict.gaps;
+    judged_pixels += verdict.judged;
+  }
+  EXPECT_GT(gaps, 0) << "of " << judged_pixels;
+}
+
+TEST(Promise, FuzzyChangesNothingWithoutMasks) {
+  const Case c = random_case(7, 40, kObjects);
+  const ViewCell cell = shaft_cell(0.2, 20.0);
+  const Impostor strict = bake_layered(c.scene, {{0}, cell}, Camera{}, {}),
+                 fuzzy = bake_layered(c.scene, {{0}, cell}, Camera{}, {.fuzzy = true});
+  EXPECT_EQ(guarantee_name(fuzzy), "nearest");
+  EXPECT_EQ(fuzzy.texels, strict.texels);
+}
+
 TEST(Promise, CentreSamplingBreaksIt) {
   BakeQuality centre;
   centre.supercover = false;

@@ -54,6 +54,7 @@ BakeQuality random_quality(Rng& rng) {
   quality.texel_scale = std::exp(rng.uniform(-0.7, 1.4));
   quality.alpha_scale = std::exp(rng.uniform(-0.3, 1.0));
   quality.fill_ratio = rng.uniform(0.3, 1.0);
+  quality.fuzzy = rng.uniform() < 0.3;
   quality.max_layers = 60;
   quality.max_resolution = 400;
   return quality;
