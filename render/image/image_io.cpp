@@ -3,7 +3,6 @@
 #include <dlfcn.h>
 
 #include <array>
-#include <cstdlib>
 
 #include "render/base/error.h"
 #include "render/image/image_codec.h"
@@ -79,20 +78,6 @@ std::string encode_png(const Texture& image) {
   std::string png;
   check(codec().encode_png(image, png), image.name);
   return png;
-}
-
-double mean_error(const Texture& a, const Texture& b) {
-  check_whole(a);
-  check_whole(b);
-  if (a.width != b.width || a.height != b.height) {
-    throw Failure(ErrorWord::kInternal, "images of " + std::to_string(a.width) + " x " + std::to_string(a.height) + " and " +
-                                            std::to_string(b.width) + " x " + std::to_string(b.height) + " pixels cannot be compared");
-  }
-  std::uint64_t sum = 0;
-  for (std::size_t i = 0; i < a.rgba.size(); ++i) {
-    if (i % 4 != 3) sum += static_cast<std::uint64_t>(std::abs(int{a.rgba[i]} - int{b.rgba[i]}));
-  }
-  return static_cast<double>(sum) / (255.0 * 3.0 * static_cast<double>(a.rgba.size() / 4));
 }
 
 }  // namespace standin

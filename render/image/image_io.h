@@ -19,7 +19,4 @@ namespace standin {
 /// Deterministic PNG (no time stamp, compression level 1).
 [[nodiscard]] std::string encode_png(const Texture& image);
 
-/// Mean absolute difference of the colour channels, 0..1. Same size required.
-[[nodiscard]] double mean_error(const Texture& a, const Texture& b);
-
 }  // namespace standin

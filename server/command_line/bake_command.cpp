@@ -1,4 +1,4 @@
-// bake: one impostor for a given view cell, with its files and its cost.
+// bake: one impostor for a given view cell, with its files, its cost and its quality.
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -9,13 +9,15 @@
 
 #include "render/base/error.h"
 #include "render/impostor/atlas.h"
-#include "render/impostor/bake.h"
 #include "render/impostor/impostor_glb.h"
+#include "render/impostor/technique.h"
+#include "render/impostor/texture_pyramid.h"
 #include "render/scene/load.h"
 #include "server/command_line/commands.h"
 #include "server/files/output_folder.h"
 #include "server/job/gpu_memory.h"
 #include "server/job/world.h"
+#include "server/verify/impostor_quality.h"
 
 namespace standin {
 namespace {
@@ -86,6 +88,30 @@ Box bounds_of(const Scene& scene, const std::vector<std::uint32_t>& objects) {
   return bounds;
 }
 
+Impostor bake(const Scene& scene, const BakeRequest& request, const CommandContext& context) {
+  return bake_impostor(scene, TexturePyramids(scene), technique_named(context.arguments.technique).value(), request,
+                       camera_of(context.spec), quality_of(context.spec, ViewSpaceKind::kWalk), context.budget);
+}
+
+json cost_json(const Impostor& impostor) {
+  return {{"technique", technique_name(impostor.technique)},
+          {"layers", impostor.layers.size()},
+          {"quads", impostor.quads.size()},
+          {"triangles", textured_mesh(impostor).triangle_count()},
+          {"resolution", {impostor.frame.width, impostor.frame.height}},
+          {"texels", impostor.texel_count()},
+          {"texture_bytes", texture_bytes(impostor)},
+          {"geometry_bytes", geometry_bytes(impostor)}};
+}
+
+json image_json(const CommandContext& context, const Scene& scene, const Impostor& impostor, const std::string& glb) {
+  const Camera camera = camera_of(context.spec);
+  const QualityOptions options{context.arguments.quality_views, context.spec.seed, thread_count(context.spec),
+                               context.spec.device == "egl" ? DeviceKind::kEgl : DeviceKind::kOsMesa};
+  return quality_json(
+      judge_quality(scene, impostor, glb, camera, context.spec.alpha_scale * camera.pixel_angle_rad(), options, context.budget));
+}
+
 }  // namespace
 
 int bake_command(const CommandContext& context) {
@@ -97,22 +123,18 @@ int bake_command(const CommandContext& context) {
                     {"scene", scene.sha256},
                     {"objects", arguments.objects},
                     {"view_cell", arguments.view_cell},
+                    {"technique", arguments.technique},
                     {"spec", to_json(context.spec, true)}};
   OutputFolder folder(arguments.output, job.dump());
-  Impostor impostor = bake_layered(scene, request, camera_of(context.spec), quality_of(context.spec, ViewSpaceKind::kWalk), context.budget);
-  json metrics = {{"guarantee", guarantee_name(impostor)},
-                  {"layers", impostor.layers.size()},
-                  {"quads", impostor.quads.size()},
-                  {"resolution", {impostor.frame.width, impostor.frame.height}},
-                  {"texels", impostor.texel_count()},
-                  {"texture_bytes", texture_bytes(impostor)},
-                  {"geometry_bytes", geometry_bytes(impostor)}};
-  std::vector<Impostor> impostors;
-  impostors.push_back(std::move(impostor));
-  const ImpostorSet set = pack_atlas(std::move(impostors));
+  const Impostor impostor = bake(scene, request, context);
+  const ImpostorSet set = pack_atlas({impostor});
+  const std::string glb = encode_impostor_glb(set);
+  json metrics = cost_json(impostor);
+  metrics["guarantee"] = guarantee_name(impostor);
   metrics["gpu_bytes"] = gpu_bytes_json(set.pages);
   metrics["gpu_compression"] = gpu_compression_json(set.pages, thread_count(context.spec), context.budget);
-  folder.write("impostors.glb", encode_impostor_glb(set));
+  metrics["image"] = arguments.quality_views > 0 ? image_json(context, scene, impostor, glb) : json();
+  folder.write("impostors.glb", glb);
   folder.write("metrics.json", metrics.dump(2));
   folder.commit();
   std::cout << metrics.dump(arguments.json ? 2 : -1) << "\n";

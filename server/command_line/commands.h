@@ -19,14 +19,16 @@ struct CommandArguments {
   std::string folder;  // DIR
   std::string output;  // -o
   std::string target;
-  std::string evaluate;       // calibrate --evaluate
-  std::string samples;        // calibrate --samples
-  std::string refit;          // calibrate --refit
-  double seconds = 45.0;      // calibrate
-  double target_error = 0.0;  // calibrate: ends it early; 0: never
-  double coverage = 0.99;     // calibrate
-  std::string objects;        // bake: "1,2,5-9"; empty: all
-  std::string view_cell;      // bake: shaft:... or box:...
+  std::string evaluate;               // calibrate --evaluate
+  std::string samples;                // calibrate --samples
+  std::string refit;                  // calibrate --refit
+  double seconds = 45.0;              // calibrate
+  double target_error = 0.0;          // calibrate: ends it early; 0: never
+  double coverage = 0.99;             // calibrate
+  std::string objects;                // bake: "1,2,5-9"; empty: all
+  std::string view_cell;              // bake: shaft:... or box:...
+  std::string technique = "layered";  // bake
+  std::uint32_t quality_views = 50;   // bake; 0: its image metrics are left out
   std::uint32_t city_objects = 5287;
   std::uint64_t city_triangles = 10'400'000;
   std::uint32_t judged_views = 500;  // verify

@@ -11,7 +11,7 @@ namespace {
 const std::vector<std::string> kSceneSections = {"scene"};
 const std::vector<std::string> kPlanSections = {"budget_ms", "scene",  "camera", "view_space", "visibility", "candidates", "impostors",
                                                 "select",    "device", "survey", "verify",     "seed",       "force",      "threads"};
-const std::vector<std::string> kBakeSections = {"scene", "camera", "impostors", "threads"};
+const std::vector<std::string> kBakeSections = {"scene", "camera", "impostors", "device", "seed", "threads"};
 const std::vector<std::string> kTimingSections = {"scene", "camera", "device", "seed", "threads"};
 
 bool in_sections(const std::string& key, const std::vector<std::string>& sections) {
@@ -163,7 +163,12 @@ void add_planning_commands(Grammar& grammar) {
       .add_option("--view-cell", bake.arguments().view_cell,
                   "shaft:DX,DY,DZ,APEX_DEG,MIN_DISTANCE (direction to the viewer) or box:X0,Y0,Z0,X1,Y1,Z1")
       ->required();
-  bake.app.add_option("--technique", bake.parsed.context.spec.techniques, "impostor technique")->check(CLI::IsMember({"layered"}));
+  bake.app.add_option("--technique", bake.arguments().technique, "impostor technique")
+      ->check(CLI::IsMember({"layered", "tdm"}))
+      ->capture_default_str();
+  bake.app.add_option("--views", bake.arguments().quality_views, "views inside the view cell that the image metrics look at; 0: none")
+      ->check(CLI::Range(0, 100'000))
+      ->capture_default_str();
   bake.spec_flags(kBakeSections);
   bake.output("result folder");
   bake.json();

@@ -36,8 +36,8 @@ Texture shrunk(const Texture& page) {
 
 std::string caption_of(const VerifiedView& view) {
   char text[160];
-  std::snprintf(text, sizeof text, "estimated %.1f ms before, %.1f ms after; mean image error %.4f", view.estimated_before_ms,
-                view.estimated_after_ms, view.mean_error);
+  std::snprintf(text, sizeof text, "estimated %.1f ms before, %.1f ms after; mean image error %.4f, FLIP %.4f", view.estimated_before_ms,
+                view.estimated_after_ms, view.mean_error, view.mean_flip);
   return text;
 }
 

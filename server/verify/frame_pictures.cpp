@@ -4,7 +4,7 @@
 #include <cstdlib>
 #include <numeric>
 
-#include "render/image/image_io.h"
+#include "render/image/image_error.h"
 
 namespace standin {
 namespace {
@@ -43,10 +43,11 @@ std::vector<std::uint32_t> descending(const std::vector<VerifiedView>& views, co
 
 }  // namespace
 
-double picture_error(Renderer& renderer, const View& view, const FramePair& frames) {
-  if (frames.after.impostors.empty()) return 0.0;
+PictureError picture_error(Renderer& renderer, const View& view, const FramePair& frames) {
+  if (frames.after.impostors.empty()) return {};
   const Texture original = picture(renderer, view, frames.before);
-  return mean_error(original, picture(renderer, view, frames.after));
+  const Texture with_impostors = picture(renderer, view, frames.after);
+  return {mean_error(original, with_impostors), mean_flip(original, with_impostors)};
 }
 
 ViewPictures take_pictures(Renderer& renderer, std::uint32_t index, const View& view, const FramePair& frames) {

@@ -14,8 +14,13 @@ struct FramePair {
   DrawList after;   // what the placement says
 };
 
-/// Mean absolute difference of the two pictures, 0..1; 0 without drawing where no impostor is in the frame.
-[[nodiscard]] double picture_error(Renderer& renderer, const View& view, const FramePair& frames);
+/// Of the two pictures, over all their pixels, 0..1 (image_error.h).
+struct PictureError {
+  double mean_error = 0.0;
+  double mean_flip = 0.0;
+};
+/// 0 without drawing where no impostor is in the frame.
+[[nodiscard]] PictureError picture_error(Renderer& renderer, const View& view, const FramePair& frames);
 /// Both pictures, opaque, and their difference amplified.
 [[nodiscard]] ViewPictures take_pictures(Renderer& renderer, std::uint32_t index, const View& view, const FramePair& frames);
 

@@ -48,10 +48,7 @@ GlbPage page_of(GltfFile& file, std::uint64_t material) {
   const auto texture = required_number(object_at(surface, "baseColorTexture", place), "index", place);
   const auto image = required_number(file.item("textures", texture, place), "source", place);
   Texture decoded = image_of(file, image, place);
-  GlbPage page{decoded.width, decoded.height, {}, std::move(decoded.rgba)};
-  const double cutoff = real_number(json, "alphaCutoff", 0.5, place);
-  for (std::size_t i = 3; i < page.rgba.size(); i += 4) page.opaque.push_back(page.rgba[i] / 255.0 >= cutoff);
-  return page;
+  return {decoded.width, decoded.height, std::move(decoded.rgba), real_number(json, "alphaCutoff", 0.5, place)};
 }
 
 void add_primitive(GltfFile& file, const Json& primitive, const GlbQuads& quads, const std::string& place, GlbImpostor& impostor) {

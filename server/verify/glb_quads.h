@@ -23,8 +23,8 @@ struct GlbTriangle {
 struct GlbPage {
   int width = 0;
   int height = 0;
-  std::vector<bool> opaque;        // alpha at or above the material's cutoff, rows from the top
-  std::vector<std::uint8_t> rgba;  // as stored, for drawing
+  std::vector<std::uint8_t> rgba;  // as stored, rows from the top
+  double alpha_cutoff = 0.5;       // of the material: texels are opaque from there on (alpha_sampling.h)
 };
 
 struct GlbImpostor {

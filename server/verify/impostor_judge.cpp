@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "render/base/error.h"
 #include "server/verify/impostor_rays.h"
 
 namespace standin {
@@ -38,8 +39,12 @@ Box bounds_of(const Scene& scene, const std::vector<std::uint32_t>& objects) {
 }
 
 JudgedImpostor judged(const PlacementImpostor& placed, std::uint32_t id, double alpha_rad) {
+  const auto technique = technique_named(placed.technique);
+  if (!technique)
+    throw Failure(ErrorWord::kFileBroken, "impostor " + std::to_string(id) + " is made by \"" + placed.technique + "\", unknown");
   return {"imp_" + std::to_string(id), placed.objects,   placed.layers, placed.frame.reference_viewpoint,
-          placed.frame.forward,        placed.view_cell, alpha_rad};
+          placed.frame.forward,        placed.view_cell, alpha_rad,     *technique,
+          placed.frame.slope_step};
 }
 
 }  // namespace
@@ -57,6 +62,7 @@ void judge_impostors(const VerifyInput& input, const GlbQuads& glb, const Verify
                               " fuzzy impostors, which promise nothing");
   if (promising.empty()) return;
   const std::size_t wanted = std::max(1U, options.judged_views / kViewsPerImpostor);
+  ImpostorJudgement sum;
   const std::vector<std::uint32_t> chosen = evenly_spaced(promising, wanted);
   for (std::size_t i = 0; i < chosen.size(); ++i) {
     budget.check();
@@ -72,7 +78,10 @@ void judge_impostors(const VerifyInput& input, const GlbQuads& glb, const Verify
     result.shown_pixels += judgement.shown_pixels;
     result.baseless_pixels += judgement.baseless_pixels;
     result.max_parallax_ratio = std::max(result.max_parallax_ratio, judgement.max_parallax_ratio);
+    sum.excess_pixels += judgement.excess_pixels;
+    sum.silhouette_px += judgement.silhouette_px;
   }
+  result.silhouette_bloat_px = sum.bloat_px();
   if (chosen.size() < promising.size())
     result.left_out.push_back("judging by rays: a sample of " + std::to_string(chosen.size()) + " of " + std::to_string(promising.size()) +
                               " impostors");

@@ -9,8 +9,8 @@
 
 namespace standin {
 
-/// Fills in judged_views (about options.judged_views, none where there is no impostor), gap_pixels, max_parallax_ratio and the baseless
-/// pixels, and says in left_out what rays could not judge. Independent of options.threads.
+/// Fills in judged_views (about options.judged_views, none where there is no impostor), gap_pixels, max_parallax_ratio, the baseless
+/// pixels and the bloat, and says in left_out what rays could not judge. Independent of options.threads.
 void judge_impostors(const VerifyInput& input, const GlbQuads& glb, const VerifyOptions& options, const WorkBudget& budget,
                      VerifyResult& result);
 

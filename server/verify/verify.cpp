@@ -81,16 +81,20 @@ void time_frames(Renderer& renderer, FrameTimer& timer, std::uint32_t before_cou
 
 void compare_pictures(Renderer& renderer, const std::vector<FramePair>& frames, const WorkBudget& budget, VerifyResult& result) {
   std::uint32_t compared = 0;
-  double sum = 0.0;
+  PictureError sum;
   for (std::size_t i = 0; i < result.views.size(); ++i) {
     budget.check();
     budget.report("verify: pictures", static_cast<double>(i) / static_cast<double>(result.views.size()));
     if (frames[i].after.impostors.empty()) continue;
-    result.views[i].mean_error = picture_error(renderer, result.views[i].view, frames[i]);
-    sum += result.views[i].mean_error;
+    const PictureError error = picture_error(renderer, result.views[i].view, frames[i]);
+    result.views[i].mean_error = error.mean_error;
+    result.views[i].mean_flip = error.mean_flip;
+    sum.mean_error += error.mean_error;
+    sum.mean_flip += error.mean_flip;
     ++compared;
   }
-  result.mean_error = compared > 0 ? sum / compared : 0.0;
+  result.mean_error = compared > 0 ? sum.mean_error / compared : 0.0;
+  result.mean_flip = compared > 0 ? sum.mean_flip / compared : 0.0;
   if (compared == 0) result.left_out.emplace_back("image comparison: no sampled view draws an impostor");
 }
 

@@ -33,6 +33,7 @@ struct VerifiedView {
   std::optional<double> measured_before_ms;
   std::optional<double> measured_after_ms;
   double mean_error = 0.0;  // image with against image without impostors
+  double mean_flip = 0.0;   // likewise, as an eye sees it (image_error.h)
 };
 
 /// One view in pictures, for the report.
@@ -65,8 +66,10 @@ struct VerifyResult {
   double max_parallax_ratio = 0.0;
   std::uint64_t shown_pixels = 0;                    // pixels of judged views that show an opaque texel
   std::uint64_t baseless_pixels = 0;                 // of these, without an original to compare with (impostor_rays.h): no parallax ratio
+  std::optional<double> silhouette_bloat_px;         // mean over the judged silhouettes (silhouette.h)
   std::optional<double> worst_before_over_surveyed;  // worst measured frame without impostors, over the survey's worst estimate
   double mean_error = 0.0;                           // mean over views with an impostor in them
+  double mean_flip = 0.0;                            // likewise
   std::vector<std::string> left_out;                 // what was not measured, and why
 };
 

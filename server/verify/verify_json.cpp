@@ -54,7 +54,8 @@ json frame_json(const VerifiedView& view) {
           {"estimated_after_ms", view.estimated_after_ms},
           {"before_ms", optional_number(view.measured_before_ms)},
           {"after_ms", optional_number(view.measured_after_ms)},
-          {"mean_error", view.mean_error}};
+          {"mean_error", view.mean_error},
+          {"mean_flip", view.mean_flip}};
 }
 
 }  // namespace
@@ -83,7 +84,9 @@ json image_json(const VerifyResult& result) {
           {"gap_pixels", judged ? json(result.gap_pixels) : json()},
           {"max_parallax_ratio", judged ? json(result.max_parallax_ratio) : json()},
           {"baseless_pixel_share", result.shown_pixels > 0 ? json(baseless) : json()},
-          {"mean_error", result.mean_error}};
+          {"silhouette_bloat_px", optional_number(result.silhouette_bloat_px)},
+          {"mean_error", result.mean_error},
+          {"mean_flip", result.mean_flip}};
 }
 
 }  // namespace standin

@@ -14,7 +14,7 @@ const kMetrics = `
   scene.objects scene.triangles budget_ms cpv.count cpv.solved cpv.unsolved candidates.generated candidates.pruned impostors.count
   memory.texture_bytes memory.geometry_bytes memory.total_bytes memory.atlas_padding_bytes bound.memory_lower_bound_bytes
   survey.worst_frame_ms survey.p99_frame_ms survey.worst_bound_ms survey.reachable_all_ms survey.reachable_p99_ms survey.reachable_p90_ms
-  verify.views verify.over_budget_estimated image.views image.gap_pixels image.max_parallax_ratio image.mean_error
+  verify.views verify.over_budget_estimated image.views image.gap_pixels image.max_parallax_ratio image.silhouette_bloat_px image.mean_error image.mean_flip
   stages_s.load stages_s.visibility stages_s.view_space stages_s.candidates stages_s.select stages_s.bake stages_s.verify
   peak_rss_bytes`.trim().split(/\s+/);
 

@@ -92,7 +92,7 @@ function viewsSection({ metrics, pictures }) {
   if (triples.length === 0) return null;
   const judged = metrics.image || {};
   const facts = isNumber(judged.gap_pixels)
-    ? `${count(judged.views)} views inside view cells were judged by rays against the original scene: ${count(judged.gap_pixels)} gap pixels (holes), greatest parallax ratio ${significant(judged.max_parallax_ratio, 3)} (1 is the promise). Mean image error ${percent(judged.mean_error)}.`
+    ? `${count(judged.views)} views inside view cells were judged by rays against the original scene: ${count(judged.gap_pixels)} gap pixels (holes), greatest parallax ratio ${significant(judged.max_parallax_ratio, 3)} (1 is the promise)${isNumber(judged.silhouette_bloat_px) ? `, silhouettes ${significant(judged.silhouette_bloat_px, 2)} pixels too wide` : ""}. Mean image error ${percent(judged.mean_error)}${isNumber(judged.mean_flip) ? `; as an eye sees it (FLIP, 0 to 1) ${significant(judged.mean_flip, 2)}` : ""}.`
     : "";
   return section("views", "Worst views side by side", `The views with the largest image error and the slowest ones. ${facts}`, ...triples);
 }

@@ -115,14 +115,5 @@ TEST(ImageIo, RefusesAHeaderThatClaimsTooManyPixels) {
   EXPECT_EQ(word_of([&] { (void)read_image(file); }), ErrorWord::kFileBroken);
 }
 
-TEST(ImageIo, MeanErrorCountsColourOnly) {
-  Texture a{"a", 2, 1, {0, 0, 0, 0, 10, 20, 30, 255}};
-  Texture b{"b", 2, 1, {255, 0, 0, 255, 10, 20, 30, 0}};
-  EXPECT_DOUBLE_EQ(mean_error(a, b), 1.0 / 6.0);
-  EXPECT_DOUBLE_EQ(mean_error(a, a), 0.0);
-  b.width = 1;
-  EXPECT_EQ(word_of([&] { (void)mean_error(a, b); }), ErrorWord::kInternal);
-}
-
 }  // namespace
 }  // namespace standin

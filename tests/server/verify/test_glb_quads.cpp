@@ -31,7 +31,8 @@ TEST(GlbQuads, ReadsPositionsTexelsAndAlpha) {
   EXPECT_EQ(impostor.triangles[0].texels[0], Vec2(0, 0));
   EXPECT_EQ(impostor.triangles[0].texels[2], Vec2(4, 4));
   ASSERT_EQ(quads.pages.size(), 1U);
-  for (std::size_t i = 0; i < 16; ++i) EXPECT_EQ(quads.pages[0].opaque[i], i == 2 * 4 + 1) << i;
+  EXPECT_EQ(quads.pages[0].alpha_cutoff, 0.5);
+  for (std::size_t i = 0; i < 16; ++i) EXPECT_EQ(quads.pages[0].rgba.at(4 * i + 3), i == 2 * 4 + 1 ? 255 : 0) << i;
 }
 
 TEST(GlbQuads, NamesAMissingNode) {

@@ -1,46 +1,25 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "render/base/error.h"
-#include "server/verify/impostor_rays.h"
-#include "tests/render/visibility/hand_made_scene.h"
-#include "tests/server/verify/hand_made_glb.h"
+#include "tests/server/verify/judged_panes.h"
 
 namespace standin {
 namespace {
 
-using test::HandMadeGlb;
 using test::HandMadeQuad;
+using test::judged;
+using test::kCamera;
+using test::kFromOrigin;
+using test::panes;
 using test::SceneMaker;
 using test::write_glb;
 
-// Square panes across -z: half widths and depths.
-Scene panes(const std::vector<std::pair<double, double>>& half_width_and_depth) {
-  SceneMaker maker;
-  const auto mesh = maker.pane_mesh();
-  for (const auto& [half_width, depth] : half_width_and_depth)
-    maker.add_object(mesh, glm::scale(glm::translate(Mat4(1.0), Vec3(0, 0, -depth)), Vec3(half_width, half_width, 1)));
-  return maker.take();
-}
-
-JudgedImpostor judged(const Scene& scene, std::vector<Layer> layers) {
-  JudgedImpostor impostor;
-  impostor.node = "imp_0";
-  for (std::uint32_t i = 0; i < scene.objects.size(); ++i) impostor.objects.push_back(i);
-  impostor.layers = std::move(layers);
-  impostor.alpha_rad = 0.01;
-  return impostor;
-}
-
-// 64 x 64 pixels at 45 degrees: a pixel is 0.01294 of slope, and slopes within 0.2 are 15.45 pixels on each side: 30 x 30 pixel centres, of
-// which 26 x 26 have their whole disc inside.
-const Camera kCamera{0.78539816339744831, 64, 64, 0.1};
-const View kFromOrigin{};
-
 ImpostorJudgement judge(const Scene& scene, const std::vector<HandMadeQuad>& quads, const JudgedImpostor& impostor,
                         const std::vector<View>& views = {kFromOrigin}, const Camera& camera = kCamera) {
-  return judge_impostor(scene, read_glb_quads(write_glb(HandMadeGlb{"imp_0", Vec3(0.0), "MASK", quads})), impostor, camera, views, 1, {});
+  return judge_impostor(scene, test::read_back(quads), impostor, camera, views, 1, {});
 }
 
 TEST(ImpostorRays, APaneAndItsQuadAgree) {
@@ -81,6 +60,19 @@ TEST(ImpostorRays, NothingIsAGapNearTheOutline) {
   const Scene scene = panes({{2.0, 10.0}});
   const auto result = judge(scene, {{10.0, 0.2, 16, [](int x, int) { return x != 0; }}}, judged(scene, {{10.0, 10.0, 10.0}}));
   EXPECT_EQ(result.gap_pixels, 0U);
+}
+
+// One pixel wider on every side: 32 x 32 pixels instead of 30 x 30, whose outline is 4 x 29 pixels and four cut corners long.
+TEST(ImpostorRays, BloatIsTheExcessOverTheOutline) {
+  const Scene scene = panes({{2.0, 10.0}});
+  const JudgedImpostor impostor = judged(scene, {{10.0, 10.0, 10.0}});
+  const auto opaque = [](int, int) { return true; };
+  const auto wide = judge(scene, {{10.0, 16.45 / 15.45 * 0.2, 16, opaque}}, impostor);
+  EXPECT_EQ(wide.excess_pixels, 32U * 32U - 30U * 30U);
+  EXPECT_NEAR(*wide.bloat_px(), 124.0 / (116.0 + 4.0 / std::numbers::sqrt2), 1e-12);
+  EXPECT_EQ(*judge(scene, {{10.0, 0.2, 16, opaque}}, impostor).bloat_px(), 0.0);
+  const View inside_it{Vec3(0, 0, -9), Vec3(0, 0, -1)};
+  EXPECT_FALSE(judge(scene, {{10.0, 0.2, 16, opaque}}, impostor, {inside_it}).bloat_px()) << "no outline is in the image";
 }
 
 // Two panes, the near one missing in the GLB: what shows through is 10 m too far.

@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "render/image/image_io.h"
+#include "render/image/image_error.h"
 #include "server/verify/frame_pictures.h"
 #include "server/verify/verify.h"
 #include "tests/server/verify_views/small_placement.h"
@@ -151,6 +151,8 @@ TEST_F(VerifyPlacement, RaysFindThePromiseKept) {
   EXPECT_GT(result.shown_pixels, 0U);
   EXPECT_LT(result.baseless_pixels, result.shown_pixels / 10);
   EXPECT_LE(result.max_parallax_ratio, 1.0);
+  EXPECT_GE(*result.silhouette_bloat_px, 0.0);
+  EXPECT_LE(*result.silhouette_bloat_px, 1.0);
 }
 
 TEST_F(VerifyPlacement, RaysFindAHole) {
@@ -160,6 +162,7 @@ TEST_F(VerifyPlacement, RaysFindAHole) {
   const VerifyResult result = verify(100.0, {.views = 16, .judged_views = 8});
   EXPECT_GT(result.gap_pixels, 0U);
   EXPECT_GT(result.mean_error, 0.05);
+  EXPECT_GT(result.mean_flip, 0.1);
 }
 
 TEST_F(VerifyPlacement, PicturesShowTheSameScene) {
@@ -167,9 +170,12 @@ TEST_F(VerifyPlacement, PicturesShowTheSameScene) {
   EXPECT_EQ(result.pictures.size(), 4U);
   EXPECT_LT(result.mean_error, 0.03);
   EXPECT_GT(result.mean_error, 0.0);
+  EXPECT_LT(result.mean_flip, 0.1);
+  EXPECT_GT(result.mean_flip, result.mean_error) << "edges of full contrast are seen";
   for (const auto& pictures : result.pictures) {
     const auto& view = result.views[pictures.view];
     EXPECT_NEAR(mean_error(pictures.original, pictures.with_impostors), view.mean_error, 1e-12);
+    EXPECT_NEAR(mean_flip(pictures.original, pictures.with_impostors), view.mean_flip, 1e-12);
     for (std::size_t i = 3; i < pictures.original.rgba.size(); i += 4) ASSERT_EQ(pictures.original.rgba[i], 255);
   }
 }
