@@ -3,6 +3,7 @@
 #include <chrono>
 
 #include "render/impostor/depth_mesh_texture.h"
+#include "render/impostor/recorder.h"
 #include "render/impostor/recording.h"
 
 namespace standin {
@@ -36,7 +37,11 @@ DepthMeshImpostor bake_depth_mesh(const Scene& scene, const TexturePyramids& tex
     return initial_depth_mesh(lattice, Sheets::kSeen);
   });
   const SimplifiedMesh simplified = timed(summary.simplify_s, [&] {
-    return simplify(initial, lattice, lattice_depths(recording.layers), mesh_quality.enlargement, budget);
+    const LatticeDepths depths = lattice_depths(recording.layers);
+    const auto surface_depth = [&](std::uint32_t x, std::uint32_t y, std::uint32_t layer) {
+      return depths.of_metres(depth_m(recording.images[layer].get(x, y), recording.layers[layer]));
+    };
+    return simplify(initial, lattice, depths, surface_depth, mesh_quality.enlargement, budget);
   });
   TexturedMesh mesh = timed(summary.texture_s, [&] {
     return textured(simplified, recording.images, lattice, recording.frame, recording.layers,

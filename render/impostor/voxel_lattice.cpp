@@ -89,10 +89,12 @@ LatticeDepths lattice_depths(std::span<const Layer> layers) {
   const double range = layers.size() > 1 ? first - last : nearest - farthest;
   const double scale = range > 0.0 ? static_cast<double>(std::max<std::size_t>(layers.size() - 1, 1)) / range : 1.0;
   LatticeDepths depths;
+  depths.scale = scale;
+  depths.nearest = first;
   for (const Layer& layer : layers) {
-    depths.plane.push_back(scale * (first - 1.0 / layer.distance_m));
-    depths.near.push_back(scale * (first - 1.0 / layer.near_m));
-    depths.far.push_back(scale * (first - 1.0 / layer.far_m));
+    depths.plane.push_back(depths.of_metres(layer.distance_m));
+    depths.near.push_back(depths.of_metres(layer.near_m));
+    depths.far.push_back(depths.of_metres(layer.far_m));
   }
   if (range <= 0.0) depths.near[0] = -0.5, depths.far[0] = 0.5;  // a plane facing the viewer
   return depths;
