@@ -19,6 +19,7 @@ struct VoxelLayer {
   BitImage opaque;  // as recorded
   BitImage solid;   // opaque, or hidden from the whole view cell by nearer layers
   BitImage wanted;  // opaque and to be shown
+  BitImage joined;  // these, and hidden ones through which what is to be shown hangs together
 };
 
 /// Layers near to far, all of one size; at least one.
