@@ -21,7 +21,9 @@ Cell beside(const Cell& cell, const Cell& side) {
 class Rules {
  public:
   Rules(const VoxelLattice& lattice, Sheets sheets)
-      : lattice_(lattice), all_(sheets == Sheets::kAll), columns_(2 * static_cast<int>(lattice.width) - 1),
+      : lattice_(lattice),
+        all_(sheets == Sheets::kAll),
+        columns_(2 * static_cast<int>(lattice.width) - 1),
         rows_(2 * static_cast<int>(lattice.height) - 1) {}
 
   [[nodiscard]] bool opaque(const Cell& c, int layer) const { return has_layer(layer) && every_voxel(at(layer).opaque, c); }
@@ -69,8 +71,8 @@ class Rules {
   /// Whether whoever comes straight at the wall is stopped by the nearer layer, and the wall would be a third polygon at its upper edge:
   /// rays shift by one texel a layer at most, which is two cells.
   [[nodiscard]] bool under_a_sheet(const Cell& c, const Cell& outside, const Cell& side, int layer) const {
-    return solid(outside, layer - 1) && solid(beside(outside, side), layer - 1) && front_flat(c, layer - 1) &&
-           front_flat(outside, layer - 1);
+    return solid(outside, layer - 1) && solid(beside(outside, side), layer - 1) && every_voxel(at(layer - 1).wanted, c) &&
+           front_flat(c, layer - 1) && front_flat(outside, layer - 1);
   }
   [[nodiscard]] bool wall_between(const Cell& c, const Cell& side, int layer) const {
     return has_layer(layer) && (wall(c, side, layer) || wall(beside(c, side), {-side.x, -side.y}, layer));
@@ -150,9 +152,11 @@ class Mesher {
 
   void add_flat(const Cell& c, int layer) {
     const std::int32_t depth = 2 * layer;
-    mesh_.polygons.push_back({{vertex_(c.x, c.y, depth), vertex_(c.x, c.y + 1, depth), vertex_(c.x + 1, c.y + 1, depth),
-                               vertex_(c.x + 1, c.y, depth)},
-                              c.x, c.y, layer});
+    mesh_.polygons.push_back(
+        {{vertex_(c.x, c.y, depth), vertex_(c.x, c.y + 1, depth), vertex_(c.x + 1, c.y + 1, depth), vertex_(c.x + 1, c.y, depth)},
+         c.x,
+         c.y,
+         layer});
     ++mesh_.flats;
   }
 
@@ -160,9 +164,10 @@ class Mesher {
     const std::int32_t x0 = c.x + (side.x > 0 || side.y > 0), x1 = c.x + (side.x > 0 || side.y < 0);
     const std::int32_t y0 = c.y + (side.y > 0 || side.x < 0), y1 = c.y + (side.y > 0 || side.x > 0);
     for (const std::int32_t depth : {2 * layer - 2, 2 * layer - 1})
-      mesh_.polygons.push_back(
-          {{vertex_(x0, y0, depth), vertex_(x1, y1, depth), vertex_(x1, y1, depth + 1), vertex_(x0, y0, depth + 1)},
-           c.x, c.y, (depth + 1) / 2});
+      mesh_.polygons.push_back({{vertex_(x0, y0, depth), vertex_(x1, y1, depth), vertex_(x1, y1, depth + 1), vertex_(x0, y0, depth + 1)},
+                                c.x,
+                                c.y,
+                                (depth + 1) / 2});
     ++mesh_.walls;
   }
 

@@ -1,8 +1,8 @@
 // The initial mesh over a lattice of voxels (thesis 4.4), complete and yet without useless sheets.
 //
 // Between the voxels lie cells on a lattice twice as fine: one for each voxel, for each pair side by side or one above the other, and for
-// each block of 2 x 2; a cell is opaque where all its voxels are. Four vertices a voxel, a quarter texel from its centre, are the corners of
-// all these cells. The thesis' twelve rules leak where a ray passes under a cell of the nearer layer; we use a complete rule instead
+// each block of 2 x 2; a cell is opaque where all its voxels are. Four vertices a voxel, a quarter texel from its centre, are the corners
+// of all these cells. The thesis' twelve rules leak where a ray passes under a cell of the nearer layer; we use a complete rule instead
 // (math.md 7.3): with X_k the cells opaque in layers k-1 and k,
 //     a flat polygon in layer k for each opaque cell outside X_k,
 //     a wall between layers k-1 and k on each edge from a cell of X_k to one outside.
@@ -21,8 +21,8 @@
 
 namespace standin {
 
-/// At texel coordinates (x / 2 + 1/4, y / 2 + 1/4); depth 2 k is the plane of layer k, 2 k - 1 the border of the layers k - 1 and k. Integers,
-/// in half texels and half layers, so that lengths and their ties are exact.
+/// At texel coordinates (x / 2 + 1/4, y / 2 + 1/4); depth 2 k is the plane of layer k, 2 k - 1 the border of the layers k - 1 and k.
+/// Integers, in half texels and half layers, so that lengths and their ties are exact.
 struct LatticeVertex {
   std::int32_t x = 0;
   std::int32_t y = 0;
@@ -34,9 +34,9 @@ struct LatticeVertex {
   return {0.5 * v.x + 0.25, 0.5 * v.y + 0.25};
 }
 
-/// A quadrilateral, and the cell whose voxels of `layer` it stands for. Cell (x, y) spans vertices (x, y) to (x + 1, y + 1) and has the voxels
-/// x / 2 to (x + 1) / 2, likewise in y. A wall is two such, on either side of the layers' border: on a slope the surface passes there, half
-/// way between the corners of its steps, and simplification may put vertices there.
+/// A quadrilateral, and the cell whose voxels of `layer` it stands for. Cell (x, y) spans vertices (x, y) to (x + 1, y + 1) and has the
+/// voxels x / 2 to (x + 1) / 2, likewise in y. A wall is two such, on either side of the layers' border: on a slope the surface passes
+/// there, half way between the corners of its steps, and simplification may put vertices there.
 struct DepthPolygon {
   std::array<std::uint32_t, 4> corners{0, 0, 0, 0};
   std::int32_t cell_x = 0;

@@ -99,7 +99,11 @@ Rect bounds_of(const FlatTriangle& t) {
 class Charting {
  public:
   Charting(const SimplifiedMesh& mesh, double scale, std::uint32_t max_side)
-      : mesh_(mesh), scale_(scale), max_side_(max_side), neighbours_(neighbours_over_edges(mesh)), done_(mesh.triangles.size(), 0),
+      : mesh_(mesh),
+        scale_(scale),
+        max_side_(max_side),
+        neighbours_(neighbours_over_edges(mesh)),
+        done_(mesh.triangles.size(), 0),
         local_(mesh.vertices.size(), kNone) {
     for (const TriangleCorners& c : mesh.triangles)
       normals_.push_back(lattice_normal(mesh.vertices[c[0]], mesh.vertices[c[1]], mesh.vertices[c[2]]));

@@ -81,7 +81,11 @@ class Simplifier {
  public:
   Simplifier(const DepthMesh& mesh, const VoxelLattice& lattice, const LatticeDepths& depths, const SurfaceDepth& surface_depth,
              double enlargement)
-      : complex_(mesh), cover_(lattice, depths, enlargement), exact_(lattice, depths, 1.0), depths_(depths), surface_depth_(surface_depth),
+      : complex_(mesh),
+        cover_(lattice, depths, enlargement),
+        exact_(lattice, depths, 1.0),
+        depths_(depths),
+        surface_depth_(surface_depth),
         owners_(2 * static_cast<std::uint32_t>(mesh.polygons.size())) {
     reduce_flat_parts(complex_);
     give_voxels(voxels_of(mesh, lattice));
@@ -160,7 +164,8 @@ class Simplifier {
         first = std::min(first, complex_.position(v).depth);
         last = std::max(last, complex_.position(v).depth);
       }
-      for (std::int32_t layer = first / 2; layer <= (last + 1) / 2; ++layer) give_voxels(t, triangle, static_cast<std::uint32_t>(layer), voxels);
+      for (std::int32_t layer = first / 2; layer <= (last + 1) / 2; ++layer)
+        give_voxels(t, triangle, static_cast<std::uint32_t>(layer), voxels);
     }
   }
 
@@ -285,16 +290,16 @@ class Simplifier {
   VoxelOwners owners_;
   EdgeQueue queue_;
   std::vector<Neighbour> of_removed_, of_kept_, around_;
-  std::vector<std::uint32_t> star_;                            // of the vertex to be removed
-  std::vector<std::uint32_t> new_ids_;                         // its surviving triangles
-  std::vector<CoverTriangle> new_triangles_;                   // as they would be
+  std::vector<std::uint32_t> star_;           // of the vertex to be removed
+  std::vector<std::uint32_t> new_ids_;        // its surviving triangles
+  std::vector<CoverTriangle> new_triangles_;  // as they would be
   std::vector<std::uint32_t> voxels_, new_owners_;
 };
 
 }  // namespace
 
-SimplifiedMesh simplify(const DepthMesh& mesh, const VoxelLattice& lattice, const LatticeDepths& depths,
-                        const SurfaceDepth& surface_depth, double enlargement, const WorkBudget& budget) {
+SimplifiedMesh simplify(const DepthMesh& mesh, const VoxelLattice& lattice, const LatticeDepths& depths, const SurfaceDepth& surface_depth,
+                        double enlargement, const WorkBudget& budget) {
   Simplifier simplifier(mesh, lattice, depths, surface_depth, enlargement);
   simplifier.run(budget);
   simplifier.drop_needless_parts();

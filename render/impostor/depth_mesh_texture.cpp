@@ -37,7 +37,8 @@ class VoxelColours {
     const double depth = glm::dot(offset, frame_.forward);
     const Vec2 texel = texel_from_slope(frame_, Vec2(glm::dot(offset, frame_.right), glm::dot(offset, frame_.up)) / depth);
     const auto layer = std::partition_point(layers_.begin(), layers_.end() - 1, [&](const Layer& l) { return l.far_m < depth; });
-    const Step from{static_cast<int>(std::floor(texel.x)), static_cast<int>(std::floor(texel.y)), static_cast<int>(layer - layers_.begin())};
+    const Step from{static_cast<int>(std::floor(texel.x)), static_cast<int>(std::floor(texel.y)),
+                    static_cast<int>(layer - layers_.begin())};
     for (const bool any_opaque : {false, true})
       for (const Step& step : steps_) {
         const Step to{from.x + step.x, from.y + step.y, from.layer + step.layer};
@@ -142,8 +143,7 @@ TexturedMesh textured(const SimplifiedMesh& mesh, std::span<const LayerImage> im
   }
   const VoxelColours colours(images, lattice, frame, layers);
   TexturedMesh result;
-  for (const ChartDraft& draft : charts_of(mesh, options.texels_per_voxel, options.max_side))
-    append_chart(draft, offsets, colours, result);
+  for (const ChartDraft& draft : charts_of(mesh, options.texels_per_voxel, options.max_side)) append_chart(draft, offsets, colours, result);
   return result;
 }
 

@@ -1,9 +1,9 @@
 // Textures for a simplified depth mesh (thesis 4.6), in object space.
 //
-// Triangles that face the same axis of the lattice share a chart: texture coordinates are the lattice's other two, so neighbours agree along
-// their edges and one texel is one voxel. The thesis projects the recorded image and asks for perspective correction to be switched off;
-// here coordinates are affine on each triangle as it lies in the world, so any viewer that interpolates correctly shows it right. The colour
-// of a texel is that of the recorded voxel nearest to the point of the triangle it stands for.
+// Triangles that face the same axis of the lattice share a chart: texture coordinates are the lattice's other two, so neighbours agree
+// along their edges and one texel is one voxel. The thesis projects the recorded image and asks for perspective correction to be switched
+// off; here coordinates are affine on each triangle as it lies in the world, so any viewer that interpolates correctly shows it right. The
+// colour of a texel is that of the recorded voxel nearest to the point of the triangle it stands for.
 #pragma once
 
 #include <span>

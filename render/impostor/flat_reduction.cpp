@@ -20,7 +20,8 @@ bool same_direction(const LatticeNormal& a, const LatticeNormal& b) {
 
 class FlatReduction {
  public:
-  explicit FlatReduction(TriangleComplex& complex) : complex_(complex), due_(complex.vertex_count(), 1), rested_(complex.vertex_count(), 0) {
+  explicit FlatReduction(TriangleComplex& complex)
+      : complex_(complex), due_(complex.vertex_count(), 1), rested_(complex.vertex_count(), 0) {
     for (std::uint32_t v = 0; v < complex.vertex_count(); ++v) slope_.push_back(on_slope(v) ? 1 : 0);
   }
 

@@ -11,7 +11,9 @@ struct LatticeNormal {
   friend bool operator==(const LatticeNormal&, const LatticeNormal&) = default;
 };
 [[nodiscard]] LatticeNormal lattice_normal(const LatticeVertex& a, const LatticeVertex& b, const LatticeVertex& c);
-[[nodiscard]] inline std::int64_t dot(const LatticeNormal& a, const LatticeNormal& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+[[nodiscard]] inline std::int64_t dot(const LatticeNormal& a, const LatticeNormal& b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
 
 /// Takes vertices into neighbours as long as that changes no point of the surface and of its borders. Vertices half way down a step of a
 /// slope are kept for what follows.

@@ -43,10 +43,10 @@ Recording record_request(const Scene& scene, const TexturePyramids& textures, co
   if (!plan.possible)
     throw Failure(ErrorWord::kImpostorImpossible, "impostor of " + std::to_string(request.objects.size()) + " objects from object " +
                                                       std::to_string(request.objects.front()) + " on: " + plan.why_not);
-  return {plan.frame, plan.layers,
-          record_layers(scene, textures, request.objects, plan.frame, plan.layers,
-                        quality.supercover ? Coverage::kClosed : Coverage::kCentre, budget,
-                        quality.leave_out ? Texturing::kWhereTextured : Texturing::kEverywhere)};
+  return {
+      plan.frame, plan.layers,
+      record_layers(scene, textures, request.objects, plan.frame, plan.layers, quality.supercover ? Coverage::kClosed : Coverage::kCentre,
+                    budget, quality.leave_out ? Texturing::kWhereTextured : Texturing::kEverywhere)};
 }
 
 BitImage opaque_texels(const LayerImage& image) {

@@ -35,7 +35,8 @@ class TriangleComplex {
 
   /// Whether taking `removed` into `kept` leaves border a border and manifold edges manifold: an end of a border edge goes along the border
   /// only, and where it goes straight on in two directions; the only common neighbours are the tips of the triangles that vanish.
-  [[nodiscard]] bool may_contract(const std::vector<Neighbour>& of_removed, const std::vector<Neighbour>& of_kept, std::uint32_t kept) const;
+  [[nodiscard]] bool may_contract(const std::vector<Neighbour>& of_removed, const std::vector<Neighbour>& of_kept,
+                                  std::uint32_t kept) const;
   /// Triangles of the edge vanish, the others of `removed` (its star) take `kept` as corner.
   void contract(std::uint32_t removed, std::uint32_t kept, const std::vector<std::uint32_t>& star);
   void remove(std::uint32_t triangle) { corners_[triangle][0] = kNone; }

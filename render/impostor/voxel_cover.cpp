@@ -43,8 +43,7 @@ bool edge_axis_separates(const CoverTriangle& t, const BoxAt& box) {
 
 /// Closed overlap.
 bool overlap(const CoverTriangle& t, const BoxAt& box) {
-  if (glm::any(glm::greaterThan(t.low, box.centre + box.half + kSlack)) ||
-      glm::any(glm::lessThan(t.high, box.centre - box.half - kSlack)))
+  if (glm::any(glm::greaterThan(t.low, box.centre + box.half + kSlack)) || glm::any(glm::lessThan(t.high, box.centre - box.half - kSlack)))
     return false;
   const Vec3 weight = glm::abs(t.normal) * box.half;
   if (std::abs(glm::dot(t.normal, box.centre - t.corners[0])) > weight.x + weight.y + weight.z + kSlack) return false;

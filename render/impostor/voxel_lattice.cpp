@@ -26,8 +26,8 @@ BitImage dilated(const BitImage& image) {
   return result;
 }
 
-/// One step of growth into opaque neighbours, among them those of the next and the previous layer. What lies right behind something seen, or
-/// hidden right before it, is left out: that is the inside of a surface, not a background.
+/// One step of growth into opaque neighbours, among them those of the next and the previous layer. What lies right behind something seen,
+/// or hidden right before it, is left out: that is the inside of a surface, not a background.
 void grow_wanted(VoxelLattice& lattice, const std::vector<BitImage>& inside) {
   std::vector<BitImage> wide;
   for (const VoxelLayer& layer : lattice.layers) wide.push_back(dilated(layer.wanted));
@@ -58,7 +58,6 @@ void find_bridges(VoxelLattice& lattice) {
 VoxelLattice sized_like(const std::vector<BitImage>& opaque) {
   return {opaque.front().width(), opaque.front().height(), {}};
 }
-
 
 }  // namespace
 

@@ -2,8 +2,8 @@
 //
 // Texel (x, y) of layer k is a voxel: the square of the texel, over the depth range of the layer. Of the opaque voxels only those that
 // somebody in the view cell may see have to be shown. A ring about them is kept as well where a foreground hides a background that goes on
-// behind it: simplification may move the border of either by about a texel, and no crack must open between them. Along a surface that merely
-// bends away there is no such ring, since the surface itself closes the view.
+// behind it: simplification may move the border of either by about a texel, and no crack must open between them. Along a surface that
+// merely bends away there is no such ring, since the surface itself closes the view.
 #pragma once
 
 #include <functional>
