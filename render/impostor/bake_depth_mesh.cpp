@@ -3,6 +3,7 @@
 #include <chrono>
 
 #include "render/impostor/depth_mesh_texture.h"
+#include "render/impostor/recorder.h"
 #include "render/impostor/recording.h"
 
 namespace standin {
@@ -34,8 +35,13 @@ DepthMeshImpostor bake_depth_mesh(const Scene& scene, const TexturePyramids& tex
     lattice = lattice_of(recording.images, mesh_quality.ring);
     return initial_depth_mesh(lattice, Sheets::kSeen);
   });
-  const SimplifiedMesh simplified = timed(
-      summary.simplify_s, [&] { return simplify(initial, lattice, lattice_depths(recording.layers), mesh_quality.enlargement, budget); });
+  const SimplifiedMesh simplified = timed(summary.simplify_s, [&] {
+    const LatticeDepths depths = lattice_depths(recording.layers);
+    const auto surface_depth = [&](std::uint32_t x, std::uint32_t y, std::uint32_t layer) {
+      return depths.of_metres(depth_m(recording.images[layer].get(x, y), recording.layers[layer]));
+    };
+    return simplify(initial, lattice, depths, surface_depth, mesh_quality.enlargement, budget);
+  });
   Impostor impostor{request.objects, request.view_cell, recording.frame, recording.layers, {}, {}, {}, Technique::kDepthMesh};
   impostor.fuzzy = recording.fuzzy;
   impostor.mesh = timed(summary.texture_s, [&] {

@@ -10,7 +10,7 @@
 namespace standin {
 
 struct DepthMeshQuality {
-  double enlargement = 1.5;  // of voxels in the simplification: 1 strict, up to 2
+  double enlargement = 1.0;  // of voxels in the simplification: 1 strict, up to 2 for fewer triangles
   int ring = 2;              // voxels kept beyond the borders of what can be seen
   double texels_per_voxel = 1.0;
 };

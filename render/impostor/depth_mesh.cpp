@@ -30,7 +30,7 @@ class Rules {
   [[nodiscard]] bool in_both(const Cell& c, int layer) const { return opaque(c, layer) && opaque(c, layer - 1); }
 
   [[nodiscard]] bool front_flat(const Cell& c, int layer) const {
-    return opaque(c, layer) && !opaque(c, layer - 1) && (all_ || wanted(c, layer));
+    return opaque(c, layer) && !opaque(c, layer - 1) && (all_ || any_voxel(at(layer).wanted, c));
   }
 
   /// From a cell of X to one outside, seen from that side.
@@ -38,7 +38,7 @@ class Rules {
     const Cell outside = beside(c, side);
     if (!in_both(c, layer) || in_both(outside, layer)) return false;
     if (all_) return true;
-    if (!wanted(c, layer) && !wanted(c, layer - 1)) return false;
+    if (!any_voxel(at(layer).joined, c) && !any_voxel(at(layer - 1).joined, c)) return false;
     if (solid(outside, layer) && solid(outside, layer - 1)) return false;
     return !under_a_sheet(c, outside, side, layer);
   }
@@ -61,8 +61,7 @@ class Rules {
     const auto y0 = static_cast<std::uint32_t>(c.y) / 2, y1 = (static_cast<std::uint32_t>(c.y) + 1) / 2;
     return image.test(x0, y0) && image.test(x1, y1) && image.test(x1, y0) && image.test(x0, y1);
   }
-  [[nodiscard]] bool wanted(const Cell& c, int layer) const {
-    const BitImage& image = at(layer).wanted;
+  [[nodiscard]] static bool any_voxel(const BitImage& image, const Cell& c) {
     const auto x0 = static_cast<std::uint32_t>(c.x) / 2, x1 = (static_cast<std::uint32_t>(c.x) + 1) / 2;
     const auto y0 = static_cast<std::uint32_t>(c.y) / 2, y1 = (static_cast<std::uint32_t>(c.y) + 1) / 2;
     return image.test(x0, y0) || image.test(x1, y1) || image.test(x1, y0) || image.test(x0, y1);
@@ -72,8 +71,8 @@ class Rules {
   /// Whether whoever comes straight at the wall is stopped by the nearer layer, and the wall would be a third polygon at its upper edge:
   /// rays shift by one texel a layer at most, which is two cells.
   [[nodiscard]] bool under_a_sheet(const Cell& c, const Cell& outside, const Cell& side, int layer) const {
-    return solid(outside, layer - 1) && solid(beside(outside, side), layer - 1) && front_flat(c, layer - 1) &&
-           front_flat(outside, layer - 1);
+    return solid(outside, layer - 1) && solid(beside(outside, side), layer - 1) && every_voxel(at(layer - 1).wanted, c) &&
+           front_flat(c, layer - 1) && front_flat(outside, layer - 1);
   }
   [[nodiscard]] bool wall_between(const Cell& c, const Cell& side, int layer) const {
     return has_layer(layer) && (wall(c, side, layer) || wall(beside(c, side), {-side.x, -side.y}, layer));
@@ -84,7 +83,7 @@ class Rules {
     return front_flat(beside(c, side), layer) + wall_between(c, side, layer) + wall_between(c, side, layer + 1);
   }
   [[nodiscard]] bool may_be_back_flat(const Cell& c, int layer) const {
-    if (all_ || !in_both(c, layer) || opaque(c, layer + 1) || !wanted(c, layer)) return false;
+    if (all_ || !in_both(c, layer) || opaque(c, layer + 1) || !any_voxel(at(layer).joined, c)) return false;
     return std::all_of(kSides.begin(), kSides.end(), [&](const Cell& side) { return polygons_at(c, side, layer) <= 1; });
   }
   [[nodiscard]] bool leads_to_loose_edge(Cell c, const Cell& side, int layer) const {

@@ -79,11 +79,13 @@ class EdgeQueue {
 
 class Simplifier {
  public:
-  Simplifier(const DepthMesh& mesh, const VoxelLattice& lattice, const LatticeDepths& depths, double enlargement)
+  Simplifier(const DepthMesh& mesh, const VoxelLattice& lattice, const LatticeDepths& depths, const SurfaceDepth& surface_depth,
+             double enlargement)
       : complex_(mesh),
         cover_(lattice, depths, enlargement),
         exact_(lattice, depths, 1.0),
         depths_(depths),
+        surface_depth_(surface_depth),
         owners_(2 * static_cast<std::uint32_t>(mesh.polygons.size())) {
     reduce_flat_parts(complex_);
     give_voxels(voxels_of(mesh, lattice));
@@ -171,8 +173,10 @@ class Simplifier {
     BitImage& left = voxels[layer];
     for (auto y = static_cast<std::uint32_t>(triangle.low.y); y <= static_cast<std::uint32_t>(triangle.high.y); ++y)
       for (auto x = static_cast<std::uint32_t>(triangle.low.x); x <= static_cast<std::uint32_t>(triangle.high.x); ++x)
-        if (left.test(x, y) && exact_.meets(triangle, {x, y, layer})) {
-          owners_.add(t, {x, y, layer});
+        if (left.test(x, y)) {
+          const Voxel voxel{x, y, layer, surface_depth_(x, y, layer)};
+          if (!exact_.meets(triangle, voxel)) continue;
+          owners_.add(t, voxel);
           left.clear(x, y);
         }
   }
@@ -282,6 +286,7 @@ class Simplifier {
   VoxelCover cover_;
   VoxelCover exact_;
   const LatticeDepths& depths_;
+  const SurfaceDepth& surface_depth_;
   VoxelOwners owners_;
   EdgeQueue queue_;
   std::vector<Neighbour> of_removed_, of_kept_, around_;
@@ -293,9 +298,9 @@ class Simplifier {
 
 }  // namespace
 
-SimplifiedMesh simplify(const DepthMesh& mesh, const VoxelLattice& lattice, const LatticeDepths& depths, double enlargement,
-                        const WorkBudget& budget) {
-  Simplifier simplifier(mesh, lattice, depths, enlargement);
+SimplifiedMesh simplify(const DepthMesh& mesh, const VoxelLattice& lattice, const LatticeDepths& depths, const SurfaceDepth& surface_depth,
+                        double enlargement, const WorkBudget& budget) {
+  Simplifier simplifier(mesh, lattice, depths, surface_depth, enlargement);
   simplifier.run(budget);
   simplifier.drop_needless_parts();
   return simplifier.result();

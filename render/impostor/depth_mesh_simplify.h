@@ -20,8 +20,9 @@ struct SimplifiedMesh {
   std::vector<TriangleCorners> triangles;
 };
 
-/// `enlargement` in [1, 2] of the voxels. Order, and so the result, depends on the arguments alone.
-[[nodiscard]] SimplifiedMesh simplify(const DepthMesh& mesh, const VoxelLattice& lattice, const LatticeDepths& depths, double enlargement,
-                                      const WorkBudget& budget = {});
+/// `enlargement` in [1, 2] of the voxels; `surface_depth` says where in its layer a voxel's surface lies. Order, and so the result, depends
+/// on the arguments alone.
+[[nodiscard]] SimplifiedMesh simplify(const DepthMesh& mesh, const VoxelLattice& lattice, const LatticeDepths& depths,
+                                      const SurfaceDepth& surface_depth, double enlargement, const WorkBudget& budget = {});
 
 }  // namespace standin

@@ -244,4 +244,9 @@ std::vector<LayerImage> record_layers(const Scene& scene, const TexturePyramids&
   return recorder.take();
 }
 
+double depth_m(const RecordedTexel& texel, const Layer& layer) {
+  const double share = holds_centre(texel) ? texel.order : texel.order - kTouchOnly;
+  return share > 0.0 ? layer.near_m + share * (layer.far_m - layer.near_m) : layer.near_m;
+}
+
 }  // namespace standin

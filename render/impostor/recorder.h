@@ -32,4 +32,7 @@ enum class Texturing { kWhereTextured, kEverywhere };
                                                     std::span<const Layer> layers, Coverage coverage, const WorkBudget& budget = {},
                                                     Texturing texturing = Texturing::kWhereTextured);
 
+/// How far from the reference viewpoint, along `forward`, the surface in a recorded texel lies: at the texel's centre, or nearest to it.
+[[nodiscard]] double depth_m(const RecordedTexel& texel, const Layer& layer);
+
 }  // namespace standin

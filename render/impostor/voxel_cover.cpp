@@ -64,13 +64,12 @@ VoxelCover::VoxelCover(const VoxelLattice& lattice, const LatticeDepths& depths,
   for (std::size_t k = 0; k < depths.plane.size(); ++k) {
     const double plane = depths.plane[k];
     depth_.push_back({plane + enlargement * (depths.near[k] - plane), plane + enlargement * (depths.far[k] - plane)});
+    half_depth_.push_back(enlargement * std::max(plane - depths.near[k], depths.far[k] - plane));
   }
 }
 
 bool VoxelCover::meets(const CoverTriangle& triangle, const Voxel& voxel) const {
-  const Span& depth = depth_[voxel.layer];
-  return overlap(triangle, {Vec3(voxel.x + 0.5, voxel.y + 0.5, 0.5 * (depth.low + depth.high)),
-                            Vec3(half_side_, half_side_, 0.5 * (depth.high - depth.low))});
+  return overlap(triangle, {Vec3(voxel.x + 0.5, voxel.y + 0.5, voxel.depth), Vec3(half_side_, half_side_, half_depth_[voxel.layer])});
 }
 
 /// The largest share of the way at which the segment leaves an enlarged opaque voxel that holds its point at `share`; -1 if there is none.

@@ -1,6 +1,9 @@
 // How far a simplified mesh may stray: every voxel it stands for, enlarged by a factor, must still meet it, and its edges must stay within
 // enlarged opaque voxels (thesis 4.5, math.md 7.4).
 //
+// We differ from the thesis: a voxel's box is not its layer's depth range but as far about the surface that was recorded in it. So the
+// layer's range bounds how far the mesh may lie from the original, not twice that.
+//
 // All tests are made in (texel x, texel y, scaled inverse depth), where the triangles that are drawn in the world are plane too; so the
 // bound holds for what is drawn and not only for the lattice. Boxes are closed.
 #pragma once
@@ -16,6 +19,7 @@ struct Voxel {
   std::uint32_t x = 0;
   std::uint32_t y = 0;
   std::uint32_t layer = 0;
+  double depth = 0.0;  // of its surface, scaled inverse depth
 };
 
 /// A triangle with what its tests against boxes have in common.
@@ -29,7 +33,7 @@ struct CoverTriangle {
 
 class VoxelCover {
  public:
-  /// Both must outlive this. `enlargement` >= 1 scales voxels about their centre, and their depth range about the layer's plane.
+  /// Both must outlive this. `enlargement` >= 1 scales voxels' sides and depth ranges.
   VoxelCover(const VoxelLattice& lattice, const LatticeDepths& depths, double enlargement);
 
   [[nodiscard]] bool meets(const CoverTriangle& triangle, const Voxel& voxel) const;
@@ -45,7 +49,8 @@ class VoxelCover {
 
   const VoxelLattice& lattice_;
   double half_side_;
-  std::vector<Span> depth_;  // of the enlarged voxels of a layer
+  std::vector<Span> depth_;         // of the enlarged voxels of a layer, for segments
+  std::vector<double> half_depth_;  // of a voxel's box about its surface
 };
 
 }  // namespace standin

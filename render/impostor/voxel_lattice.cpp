@@ -41,16 +41,18 @@ void grow_wanted(VoxelLattice& lattice, const std::vector<BitImage>& inside) {
   }
 }
 
-/// Adds opaque voxels between seen ones of the layers before and behind. Where a surface recedes under itself, rays at the limit of their
-/// shift just miss them, but its steps hang together through them.
-void add_bridges(VoxelLattice& lattice) {
-  std::vector<BitImage> bridges;
-  for (std::size_t k = 1; k + 1 < lattice.layers.size(); ++k) {
-    BitImage& bridge = bridges.emplace_back(dilated(lattice.layers[k - 1].wanted));
-    bridge &= dilated(lattice.layers[k + 1].wanted);
-    bridge &= lattice.layers[k].opaque;
+/// Opaque voxels between seen ones of the layers before and behind. Where a surface recedes under itself, rays at the limit of their shift
+/// just miss them, but its steps hang together through them.
+void find_bridges(VoxelLattice& lattice) {
+  for (std::size_t k = 0; k < lattice.layers.size(); ++k) {
+    VoxelLayer& layer = lattice.layers[k];
+    if (k > 0 && k + 1 < lattice.layers.size()) {
+      layer.joined = dilated(lattice.layers[k - 1].wanted);
+      layer.joined &= dilated(lattice.layers[k + 1].wanted);
+      layer.joined &= layer.opaque;
+    }
+    layer.joined |= layer.wanted;
   }
-  for (std::size_t i = 0; i < bridges.size(); ++i) lattice.layers[i + 1].wanted |= bridges[i];
 }
 
 VoxelLattice sized_like(const std::vector<BitImage>& opaque) {
@@ -68,17 +70,18 @@ VoxelLattice voxel_lattice(std::vector<BitImage> opaque, int ring) {
     wanted -= culling.hidden_in_next(mask);
     solid |= mask;
     inside.push_back(dilated(wanted));
-    lattice.layers.push_back({std::move(mask), std::move(solid), std::move(wanted)});
+    lattice.layers.push_back({std::move(mask), std::move(solid), std::move(wanted), BitImage(lattice.width, lattice.height)});
   }
-  add_bridges(lattice);
-  for (std::size_t k = 0; k + 1 < lattice.layers.size(); ++k) inside[k] |= lattice.layers[k + 1].wanted;
+  find_bridges(lattice);
+  for (std::size_t k = 0; k + 1 < lattice.layers.size(); ++k) inside[k] |= lattice.layers[k + 1].joined;
   for (int i = 0; i < ring; ++i) grow_wanted(lattice, inside);
+  for (VoxelLayer& layer : lattice.layers) layer.joined |= layer.wanted;
   return lattice;
 }
 
 VoxelLattice unculled_lattice(std::vector<BitImage> opaque) {
   VoxelLattice lattice = sized_like(opaque);
-  for (const BitImage& mask : opaque) lattice.layers.push_back({mask, mask, mask});
+  for (const BitImage& mask : opaque) lattice.layers.push_back({mask, mask, mask, mask});
   return lattice;
 }
 
@@ -88,10 +91,12 @@ LatticeDepths lattice_depths(std::span<const Layer> layers) {
   const double range = layers.size() > 1 ? first - last : nearest - farthest;
   const double scale = range > 0.0 ? static_cast<double>(std::max<std::size_t>(layers.size() - 1, 1)) / range : 1.0;
   LatticeDepths depths;
+  depths.scale = scale;
+  depths.nearest = first;
   for (const Layer& layer : layers) {
-    depths.plane.push_back(scale * (first - 1.0 / layer.distance_m));
-    depths.near.push_back(scale * (first - 1.0 / layer.near_m));
-    depths.far.push_back(scale * (first - 1.0 / layer.far_m));
+    depths.plane.push_back(depths.of_metres(layer.distance_m));
+    depths.near.push_back(depths.of_metres(layer.near_m));
+    depths.far.push_back(depths.of_metres(layer.far_m));
   }
   if (range <= 0.0) depths.near[0] = -0.5, depths.far[0] = 0.5;  // a plane facing the viewer
   return depths;

@@ -6,6 +6,7 @@
 // merely bends away there is no such ring, since the surface itself closes the view.
 #pragma once
 
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -18,6 +19,7 @@ struct VoxelLayer {
   BitImage opaque;  // as recorded
   BitImage solid;   // opaque, or hidden from the whole view cell by nearer layers
   BitImage wanted;  // opaque and to be shown
+  BitImage joined;  // these, and hidden ones through which what is to be shown hangs together
 };
 
 /// Layers near to far, all of one size; at least one.
@@ -38,13 +40,18 @@ struct LatticeDepths {
   std::vector<double> plane;  // where the layer lies
   std::vector<double> near;   // the range it stands for
   std::vector<double> far;
+  double scale = 0.0;    // of inverse metres
+  double nearest = 0.0;  // inverse metres at 0
 
+  [[nodiscard]] double of_metres(double depth_m) const { return scale * (nearest - 1.0 / depth_m); }
   /// 2 k: the plane of layer k, 2 k - 1: its near border.
   [[nodiscard]] double at(std::int32_t half_layers) const {
     const auto k = static_cast<std::size_t>(half_layers + 1) / 2;
     return half_layers % 2 == 0 ? plane[k] : near[k];
   }
 };
+/// The scaled inverse depth of the surface in voxel (x, y, layer); within the layer's range.
+using SurfaceDepth = std::function<double(std::uint32_t x, std::uint32_t y, std::uint32_t layer)>;
 [[nodiscard]] LatticeDepths lattice_depths(std::span<const Layer> layers);
 /// Layer k at depth k, reaching half a layer to both sides.
 [[nodiscard]] LatticeDepths uniform_depths(std::size_t layers);

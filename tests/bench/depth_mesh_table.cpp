@@ -89,8 +89,9 @@ int main(int argc, char** argv) {
     const auto size = scene.bounds.size();
     std::printf("%zu objects, %llu triangles, %.1f x %.1f x %.1f m\n", scene.objects.size(),
                 static_cast<unsigned long long>(scene.triangle_count()), size.x, size.y, size.z);
-    std::printf("| m | layers | meshes | initial polygons | triangles | charts | texture kB | geometry kB | record mesh simplify texture, s |"
-                " layers | layered quads | texture kB |\n|---|---|---|---|---|---|---|---|---|---|---|---|\n");
+    std::printf(
+        "| m | layers | meshes | initial polygons | triangles | charts | texture kB | geometry kB | record mesh simplify texture, s |"
+        " layers | layered quads | texture kB |\n|---|---|---|---|---|---|---|---|---|---|---|---|\n");
     for (const double distance_m : arguments.distances_m) standin::print_row(scene, textures, arguments, distance_m);
   } catch (const standin::Failure& failure) {
     std::cerr << failure.what() << "\n";
