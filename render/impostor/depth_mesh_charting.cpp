@@ -32,11 +32,14 @@ Facing facing_of(const LatticeNormal& n) {
   return {axis, c[static_cast<std::size_t>(axis)] > 0};
 }
 
-/// Whether a triangle, seen from that side, is no more than about halved in size.
-bool faces(const LatticeNormal& n, const Facing& facing) {
+/// Whether a triangle may be seen from that side: it is no more than about halved in size there, or no more than a voxel of it is lost.
+bool faces(const std::array<LatticeVertex, 3>& t, const LatticeNormal& n, const Facing& facing) {
   const auto c = components(n);
   const std::int64_t along = facing.positive ? c[static_cast<std::size_t>(facing.axis)] : -c[static_cast<std::size_t>(facing.axis)];
-  return 2 * along >= std::max({std::abs(c[0]), std::abs(c[1]), std::abs(c[2])});
+  if (2 * along >= std::max({std::abs(c[0]), std::abs(c[1]), std::abs(c[2])})) return true;
+  const auto place = [&](const LatticeVertex& v) { return facing.axis == 0 ? v.x : facing.axis == 1 ? v.y : v.depth; };
+  const auto [low, high] = std::minmax({place(t[0]), place(t[1]), place(t[2])});
+  return along >= 0 && high - low <= 2;
 }
 
 Vec2 chart_coordinates(const LatticeVertex& v, int axis) {
@@ -140,6 +143,11 @@ class Charting {
     return draft();
   }
 
+  [[nodiscard]] std::array<LatticeVertex, 3> corners_of(std::uint32_t t) const {
+    const TriangleCorners& c = mesh_.triangles[t];
+    return {mesh_.vertices[c[0]], mesh_.vertices[c[1]], mesh_.vertices[c[2]]};
+  }
+
   [[nodiscard]] FlatTriangle flat(std::uint32_t t) const {
     FlatTriangle result;
     for (std::size_t i = 0; i < 3; ++i) result[i] = scale_ * chart_coordinates(mesh_.vertices[mesh_.triangles[t][i]], facing_.axis);
@@ -168,7 +176,8 @@ class Charting {
     done_[t] = 1;
     members_.push_back(t);
     for (const std::uint32_t next : neighbours_[t])
-      if (done_[next] == 0 && faces(normals_[next], facing_) && std::find(frontier_.begin(), frontier_.end(), next) == frontier_.end())
+      if (done_[next] == 0 && faces(corners_of(next), normals_[next], facing_) &&
+          std::find(frontier_.begin(), frontier_.end(), next) == frontier_.end())
         frontier_.push_back(next);
   }
 
