@@ -34,7 +34,7 @@ std::optional<Technique> technique_named(std::string_view name) {
 }
 
 std::string_view guarantee_name(const Impostor& impostor) {
-  return impostor.fuzzy ? "none" : "nearest";
+  return impostor.fuzzy || impostor.technique == Technique::kDepthMesh ? "none" : "nearest";
 }
 
 TexturedMesh textured_mesh(const Impostor& impostor) {

@@ -96,7 +96,8 @@ struct Impostor {
   [[nodiscard]] bool empty() const { return quads.empty() && mesh.charts.empty(); }
 };
 
-/// "nearest": gapless and free of parallax error at nearest-texel sampling; "none": fuzzy, and gapless perhaps.
+/// "nearest": gapless and free of parallax error at nearest-texel sampling; "none": fuzzy or a depth mesh, gapless and near the truth
+/// perhaps (tests/bench/depth_mesh_table.md says how often).
 [[nodiscard]] std::string_view guarantee_name(const Impostor& impostor);
 
 /// One chart for each quad (corners from the upper left, counter-clockwise as the viewer sees them), or the mesh itself.
