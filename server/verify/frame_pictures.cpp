@@ -4,12 +4,14 @@
 #include <cstdlib>
 #include <numeric>
 
+#include "render/base/parallel.h"
 #include "render/image/image_error.h"
 
 namespace standin {
 namespace {
 
 constexpr int kAmplification = 4;
+constexpr std::size_t kPairsPerThread = 4;
 
 Texture picture(Renderer& renderer, const View& view, const DrawList& list) {
   renderer.draw(view, list);
@@ -43,11 +45,23 @@ std::vector<std::uint32_t> descending(const std::vector<VerifiedView>& views, co
 
 }  // namespace
 
-PictureError picture_error(Renderer& renderer, const View& view, const FramePair& frames) {
-  if (frames.after.impostors.empty()) return {};
-  const Texture original = picture(renderer, view, frames.before);
-  const Texture with_impostors = picture(renderer, view, frames.after);
-  return {mean_error(original, with_impostors), mean_flip(original, with_impostors)};
+PicturePair draw_pair(Renderer& renderer, const View& view, const FramePair& frames) {
+  return {picture(renderer, view, frames.before), picture(renderer, view, frames.after)};
+}
+
+PictureError error_of(const PicturePair& pictures) {
+  return {mean_error(pictures.original, pictures.with_impostors), mean_flip(pictures.original, pictures.with_impostors)};
+}
+
+void compare_pairs(std::size_t count, int threads, const WorkBudget& budget, const std::function<PicturePair(std::size_t)>& draw,
+                   const std::function<void(std::size_t, const PicturePair&)>& compare) {
+  const std::size_t at_a_time = kPairsPerThread * static_cast<std::size_t>(std::max(1, threads));
+  for (std::size_t first = 0; first < count; first += at_a_time) {
+    budget.check();
+    std::vector<PicturePair> pairs;
+    for (std::size_t i = first; i < std::min(count, first + at_a_time); ++i) pairs.push_back(draw(i));
+    parallel_for(pairs.size(), threads, budget, [&](std::size_t k) { compare(first + k, pairs[k]); });
+  }
 }
 
 ViewPictures take_pictures(Renderer& renderer, std::uint32_t index, const View& view, const FramePair& frames) {

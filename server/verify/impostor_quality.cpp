@@ -1,6 +1,8 @@
 #include "server/verify/impostor_quality.h"
 
 #include <algorithm>
+#include <cstdlib>
+#include <span>
 
 #include "render/device/renderer.h"
 #include "render/image/image_error.h"
@@ -37,13 +39,13 @@ JudgedImpostor judged(const Impostor& baked, double alpha_rad) {
           baked.view_cell, alpha_rad,     baked.technique, baked.frame.slope_step};
 }
 
-std::optional<CoveredError> covered_error(const Texture& original, const Texture& shown) {
-  const std::vector<float> flip = flip_map(original, shown);
+std::optional<CoveredError> covered_error(const PicturePair& pictures) {
+  const std::vector<float> flip = flip_map(pictures.original, pictures.with_impostors);
   CoveredError sum;
   std::uint64_t covered = 0;
   for (std::size_t pixel = 0; pixel < flip.size(); ++pixel) {
-    const std::uint8_t* a = &original.rgba[4 * pixel];
-    const std::uint8_t* b = &shown.rgba[4 * pixel];
+    const std::uint8_t* a = &pictures.original.rgba[4 * pixel];
+    const std::uint8_t* b = &pictures.with_impostors.rgba[4 * pixel];
     if (a[3] == 0 && b[3] == 0) continue;
     ++covered;
     for (int c = 0; c < 3; ++c) sum.mean_error += std::abs(int{a[c]} - int{b[c]}) / (3.0 * 255.0);
@@ -54,37 +56,28 @@ std::optional<CoveredError> covered_error(const Texture& original, const Texture
   return CoveredError{sum.mean_error / count, sum.mean_flip / count};
 }
 
-class PictureJudge {
- public:
-  PictureJudge(const Scene& scene, const ImpostorSet& shipped, const Camera& camera, DeviceKind device)
-      : context_(make_context(device, camera.width, camera.height)),
-        renderer_(*context_, scene, camera),
-        frames_{{shipped.impostors.front().objects, {}}, {{}, {0}}} {
-    renderer_.upload(shipped);
-  }
-  [[nodiscard]] std::optional<CoveredError> judge(const View& view) {
-    const Texture original = draw(view, frames_.before);
-    return covered_error(original, draw(view, frames_.after));
-  }
+/// One for each view, on a device of its own.
+std::vector<std::optional<CoveredError>> covered_errors(const Scene& scene, const ImpostorSet& shipped, const Camera& camera,
+                                                        const std::vector<View>& views, const QualityOptions& options,
+                                                        const WorkBudget& budget) {
+  const auto context = make_context(options.device, camera.width, camera.height);
+  Renderer renderer(*context, scene, camera);
+  renderer.upload(shipped);
+  const FramePair frames{{shipped.impostors.front().objects, {}}, {{}, {0}}};
+  std::vector<std::optional<CoveredError>> errors(views.size());
+  const auto draw = [&](std::size_t i) {
+    budget.report("quality: pictures", static_cast<double>(i) / static_cast<double>(views.size()));
+    return draw_pair(renderer, views[i], frames);
+  };
+  compare_pairs(views.size(), options.threads, budget, draw,
+                [&](std::size_t i, const PicturePair& pictures) { errors[i] = covered_error(pictures); });
+  return errors;
+}
 
- private:
-  Texture draw(const View& view, const DrawList& list) {
-    renderer_.draw(view, list);
-    return renderer_.read_pixels();
-  }
-
-  std::unique_ptr<Context> context_;
-  Renderer renderer_;
-  FramePair frames_;
-};
-
-std::optional<CoveredError> mean_over(PictureJudge& judge, const std::vector<View>& views, const WorkBudget& budget) {
+std::optional<CoveredError> mean_of(std::span<const std::optional<CoveredError>> errors) {
   CoveredError sum;
   std::uint32_t compared = 0;
-  for (std::size_t i = 0; i < views.size(); ++i) {
-    budget.check();
-    budget.report("quality: pictures", static_cast<double>(i) / static_cast<double>(views.size()));
-    const auto error = judge.judge(views[i]);
+  for (const auto& error : errors) {
     if (!error) continue;
     sum.mean_error += error->mean_error;
     sum.mean_flip += error->mean_flip;
@@ -113,14 +106,15 @@ ImpostorQuality judge_quality(const Scene& scene, const Impostor& baked, const s
                               const QualityOptions& options, const WorkBudget& budget) {
   const GlbQuads file = read_glb_quads(glb);
   const Box target = bounds_of(scene, baked.objects);
-  const std::vector<View> views = sample_cell_views(baked.view_cell, target, options.views, options.seed);
+  std::vector<View> views = sample_cell_views(baked.view_cell, target, options.views, options.seed);
   ImpostorQuality quality;
   budget.report("quality: rays", 0.0);
   const auto judgements = judge_samplings(scene, file, judged(baked, alpha_rad), camera, views, kAlphaSamplings, options.threads, budget);
   std::ranges::copy(judgements, quality.by_sampling.begin());
-  PictureJudge pictures(scene, shipped_impostors(file, placement_of(baked)), camera, options.device);
-  quality.at_reference = pictures.judge(from_reference(baked.frame, target.centre()));
-  quality.over_views = mean_over(pictures, views, budget);
+  views.push_back(from_reference(baked.frame, target.centre()));
+  const auto errors = covered_errors(scene, shipped_impostors(file, placement_of(baked)), camera, views, options, budget);
+  quality.at_reference = errors.back();
+  quality.over_views = mean_of(std::span(errors).first(options.views));
   return quality;
 }
 

@@ -223,16 +223,15 @@ class Judge {
   // The GLB does not say which layer a quad belongs to: the one nearest to it.
   [[nodiscard]] Layer depth_range(double depth_m) const {
     const auto& layers = impostor_.layers;
-    const bool layered = impostor_.technique == Technique::kLayered;
-    const auto off = [&](const Layer& layer) {
-      return layered ? std::abs(layer.distance_m - depth_m) : std::max({0.0, layer.near_m - depth_m, depth_m - layer.far_m});
-    };
-    const auto own = std::min_element(layers.begin(), layers.end(), [&](const Layer& a, const Layer& b) { return off(a) < off(b); });
-    if (layered) return *own;
-    Layer range = *own;
-    if (own != layers.begin()) range.near_m = (own - 1)->near_m;
-    if (own + 1 != layers.end()) range.far_m = (own + 1)->far_m;
-    return range;
+    if (impostor_.technique == Technique::kLayered) {
+      const auto after = std::ranges::lower_bound(layers, depth_m, {}, &Layer::distance_m);
+      if (after == layers.begin()) return *after;
+      const auto before = after - 1;
+      return after == layers.end() || depth_m - before->distance_m <= after->distance_m - depth_m ? *before : *after;
+    }
+    const auto found = std::ranges::lower_bound(layers, depth_m, {}, &Layer::far_m);
+    const auto own = found == layers.end() ? found - 1 : found;
+    return {own->distance_m, (own == layers.begin() ? own : own - 1)->near_m, (own + 1 == layers.end() ? own : own + 1)->far_m};
   }
 
   const JudgedImpostor& impostor_;

@@ -7,11 +7,14 @@
 namespace standin {
 
 PixelRays::PixelRays(const View& view, const Camera& camera)
-    : view_(view), camera_(camera), world_from_eye_(world_from_eye_rotation(view.direction)) {}
+    : view_(view),
+      camera_(camera),
+      tan_half_(camera.tan_half_x(), camera.tan_half_y()),
+      world_from_eye_(world_from_eye_rotation(view.direction)) {}
 
 Vec3 PixelRays::direction(int x, int y) const {
-  const double right = camera_.tan_half_x() * (2.0 * (x + 0.5) / camera_.width - 1.0);
-  const double up = camera_.tan_half_y() * (1.0 - 2.0 * (y + 0.5) / camera_.height);
+  const double right = tan_half_.x * (2.0 * (x + 0.5) / camera_.width - 1.0);
+  const double up = tan_half_.y * (1.0 - 2.0 * (y + 0.5) / camera_.height);
   return glm::normalize(world_from_eye_ * Vec3(right, up, -1.0));
 }
 
@@ -25,7 +28,7 @@ PixelWindow PixelRays::window_of(const Box& box) const {
   for (int i = 0; i < 8; ++i) {
     const Vec3 eye = (box.corner(i) - view_.position) * world_from_eye_;
     if (!(eye.z < 0.0)) return {0, 0, camera_.width, camera_.height};
-    const Vec2 ndc(eye.x / (-eye.z * camera_.tan_half_x()), -eye.y / (-eye.z * camera_.tan_half_y()));
+    const Vec2 ndc(eye.x / (-eye.z * tan_half_.x), -eye.y / (-eye.z * tan_half_.y));
     low = glm::min(low, ndc);
     high = glm::max(high, ndc);
   }

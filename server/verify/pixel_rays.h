@@ -34,6 +34,7 @@ class PixelRays {
  private:
   const View& view_;
   const Camera& camera_;
+  Vec2 tan_half_;
   Mat3 world_from_eye_;
 };
 

@@ -12,7 +12,9 @@ namespace {
 
 constexpr double kNowhere = std::numeric_limits<double>::infinity();
 constexpr std::uint32_t kLeafTriangles = 4;
-constexpr std::size_t kStackSize = 64;  // halves of at most 2^32 triangles
+// Uneven splits end at a depth from which on halves are taken: 64 levels hold 2^32 triangles below it.
+constexpr int kDepthOfHalving = 32;
+constexpr std::size_t kStackSize = 72;
 // Texel coordinates of corners went through float: within this many texels of a whole number they are meant to be it.
 constexpr double kTexelTolerance = 1e-3;
 
@@ -35,6 +37,11 @@ Vec3 safe_inverse(const Vec3& direction) {
   Vec3 inverse(0.0);
   for (int axis = 0; axis < 3; ++axis) inverse[axis] = 1.0 / (direction[axis] != 0.0 ? direction[axis] : 1e-300);
   return inverse;
+}
+
+double half_area(const Box& box) {
+  const Vec3 size = box.size();
+  return size.x * size.y + size.y * size.z + size.z * size.x;
 }
 
 // Distance at which the ray enters the box; infinity where it misses it.
@@ -63,7 +70,7 @@ TriangleCaster::TriangleCaster(const GlbQuads& quads, const GlbImpostor& imposto
   for (const GlbPage& page : quads.pages) pages_.emplace_back(page, mipmapped);
   for (std::uint32_t i = 0; i < impostor.triangles.size(); ++i)
     if (const auto triangle = prepared(i)) triangles_.push_back(*triangle);
-  if (!triangles_.empty()) build(0, static_cast<std::uint32_t>(triangles_.size()));
+  if (!triangles_.empty()) build(0, static_cast<std::uint32_t>(triangles_.size()), 0);
 }
 
 std::optional<TriangleCaster::Triangle> TriangleCaster::prepared(std::uint32_t source) const {
@@ -101,34 +108,61 @@ std::pair<Vec3, Vec3> TriangleCaster::texel_steps(std::uint32_t triangle) const 
   return {(b.y * first - a.y * second) / area, (a.x * second - b.x * first) / area};
 }
 
-// Median splits along the axis in which the centres lie farthest apart; ties by index, so the tree is the same everywhere.
-void TriangleCaster::build(std::uint32_t first, std::uint32_t last) {
+// Of the triangle and of what lies beyond its edges by tolerance, which is more than rounding.
+Box TriangleCaster::box_of(const Triangle& triangle) {
+  Box box;
+  for (const Vec3& corner : triangle.corners) box.extend(corner);
+  const Vec3 margin(4.0 * kEdgeTolerance * box.diagonal());
+  return {box.min - margin, box.max + margin};
+}
+
+// By centre along an axis; ties by index, so that the tree is the same everywhere.
+void TriangleCaster::sort_along(int axis, std::uint32_t first, std::uint32_t last) {
+  const auto key = [axis](const Triangle& t) { return std::pair(t.corners[0][axis] + t.corners[1][axis] + t.corners[2][axis], t.source); };
+  std::sort(triangles_.begin() + first, triangles_.begin() + last, [&](const Triangle& a, const Triangle& b) { return key(a) < key(b); });
+}
+
+// Surface area heuristic over the triangles as they are sorted: where to split, and the sum of area times triangles of both sides.
+std::pair<std::uint32_t, double> TriangleCaster::best_split(std::uint32_t first, std::uint32_t last) const {
+  std::vector<double> area_after(last - first);
+  Box after;
+  for (std::uint32_t i = last; i-- > first;) {
+    after.extend(box_of(triangles_[i]));
+    area_after[i - first] = half_area(after);
+  }
+  std::pair best(first + (last - first) / 2, kNowhere);
+  Box before;
+  for (std::uint32_t i = first + 1; i < last; ++i) {
+    before.extend(box_of(triangles_[i - 1]));
+    const double cost = half_area(before) * (i - first) + area_after[i - first] * (last - i);
+    if (cost < best.second) best = {i, cost};
+  }
+  return best;
+}
+
+void TriangleCaster::build(std::uint32_t first, std::uint32_t last, int depth) {
   const std::size_t index = nodes_.size();
   nodes_.emplace_back();
-  Box box, centres;
-  for (std::uint32_t i = first; i < last; ++i) {
-    Box own;
-    for (const Vec3& corner : triangles_[i].corners) own.extend(corner);
-    // What lies beyond the edges by tolerance is in the box, and more than rounding.
-    const Vec3 margin(4.0 * kEdgeTolerance * own.diagonal());
-    box.extend(Box{own.min - margin, own.max + margin});
-    centres.extend(own.centre());
-  }
-  nodes_[index].box = box;
+  for (std::uint32_t i = first; i < last; ++i) nodes_[index].box.extend(box_of(triangles_[i]));
   if (last - first <= kLeafTriangles) {
     nodes_[index].first = first;
     nodes_[index].count = last - first;
     return;
   }
-  const Vec3 size = centres.size();
-  const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
-  const auto key = [axis](const Triangle& t) { return std::pair(t.corners[0][axis] + t.corners[1][axis] + t.corners[2][axis], t.source); };
-  const std::uint32_t middle = first + (last - first) / 2;
-  const auto begin = triangles_.begin();
-  std::nth_element(begin + first, begin + middle, begin + last, [&](const Triangle& a, const Triangle& b) { return key(a) < key(b); });
-  build(first, middle);
+  int best_axis = 0;
+  std::pair best(first, kNowhere);
+  for (int axis = 0; axis < 3; ++axis) {
+    sort_along(axis, first, last);
+    const auto split = best_split(first, last);
+    if (axis > 0 && !(split.second < best.second)) continue;
+    best = split;
+    best_axis = axis;
+  }
+  if (depth >= kDepthOfHalving) best.first = first + (last - first) / 2;
+  sort_along(best_axis, first, last);
+  build(first, best.first, depth + 1);
   nodes_[index].first = static_cast<std::uint32_t>(nodes_.size());
-  build(middle, last);
+  build(best.first, last, depth + 1);
 }
 
 Vec2 TriangleCaster::texel_at(const Triangle& triangle, const Vec3& point) const {

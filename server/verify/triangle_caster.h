@@ -59,7 +59,10 @@ class TriangleCaster {
   struct Query;
 
   [[nodiscard]] std::optional<Triangle> prepared(std::uint32_t source) const;
-  void build(std::uint32_t first, std::uint32_t last);
+  [[nodiscard]] static Box box_of(const Triangle& triangle);
+  void sort_along(int axis, std::uint32_t first, std::uint32_t last);
+  [[nodiscard]] std::pair<std::uint32_t, double> best_split(std::uint32_t first, std::uint32_t last) const;
+  void build(std::uint32_t first, std::uint32_t last, int depth);
   [[nodiscard]] Vec2 texel_at(const Triangle& triangle, const Vec3& point) const;
   [[nodiscard]] double footprint_texels(const Triangle& triangle, const Query& query, const Vec2& texel) const;
   [[nodiscard]] bool is_opaque(const Triangle& triangle, const Query& query, const Vec3& point) const;

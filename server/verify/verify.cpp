@@ -79,23 +79,26 @@ void time_frames(Renderer& renderer, FrameTimer& timer, std::uint32_t before_cou
   }
 }
 
-void compare_pictures(Renderer& renderer, const std::vector<FramePair>& frames, const WorkBudget& budget, VerifyResult& result) {
-  std::uint32_t compared = 0;
-  PictureError sum;
-  for (std::size_t i = 0; i < result.views.size(); ++i) {
-    budget.check();
-    budget.report("verify: pictures", static_cast<double>(i) / static_cast<double>(result.views.size()));
-    if (frames[i].after.impostors.empty()) continue;
-    const PictureError error = picture_error(renderer, result.views[i].view, frames[i]);
-    result.views[i].mean_error = error.mean_error;
-    result.views[i].mean_flip = error.mean_flip;
-    sum.mean_error += error.mean_error;
-    sum.mean_flip += error.mean_flip;
-    ++compared;
+/// Only views that draw an impostor are drawn.
+void compare_pictures(Renderer& renderer, const std::vector<FramePair>& frames, int threads, const WorkBudget& budget,
+                      VerifyResult& result) {
+  std::vector<std::size_t> compared;
+  for (std::size_t i = 0; i < result.views.size(); ++i)
+    if (!frames[i].after.impostors.empty()) compared.push_back(i);
+  const auto draw = [&](std::size_t k) {
+    budget.report("verify: pictures", static_cast<double>(k) / static_cast<double>(compared.size()));
+    return draw_pair(renderer, result.views[compared[k]].view, frames[compared[k]]);
+  };
+  compare_pairs(compared.size(), threads, budget, draw, [&](std::size_t k, const PicturePair& pictures) {
+    const PictureError error = error_of(pictures);
+    result.views[compared[k]].mean_error = error.mean_error;
+    result.views[compared[k]].mean_flip = error.mean_flip;
+  });
+  if (compared.empty()) result.left_out.emplace_back("image comparison: no sampled view draws an impostor");
+  for (const std::size_t i : compared) {
+    result.mean_error += result.views[i].mean_error / static_cast<double>(compared.size());
+    result.mean_flip += result.views[i].mean_flip / static_cast<double>(compared.size());
   }
-  result.mean_error = compared > 0 ? sum.mean_error / compared : 0.0;
-  result.mean_flip = compared > 0 ? sum.mean_flip / compared : 0.0;
-  if (compared == 0) result.left_out.emplace_back("image comparison: no sampled view draws an impostor");
 }
 
 void count_over_budget(double budget_ms, VerifyResult& result) {
@@ -150,7 +153,7 @@ VerifyResult verify_placement(const VerifyInput& input, Context& context, const 
 
   Renderer renderer(context, input.scene, input.camera);
   renderer.upload(shipped);
-  compare_pictures(renderer, frames, budget, result);
+  compare_pictures(renderer, frames, options.threads, budget, result);
   if (start_timing) {
     const TimingSession session = start_timing(context);
     time_frames(renderer, *session.timer, options.measured_before, frames, budget, result.views);

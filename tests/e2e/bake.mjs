@@ -1,0 +1,41 @@
+// `bake`: one impostor with its files, its cost and what the written file is worth.
+import assert from "node:assert/strict";
+import { readdirSync } from "node:fs";
+import { join } from "node:path";
+import test from "node:test";
+import { city, expectExit, readJson, scratch } from "./standin.mjs";
+
+const folder = scratch();
+const bake = (name, ...more) => {
+  const out = join(folder, name);
+  const printed = JSON.parse(expectExit(0, "bake", city, "--objects", "2", "--view-cell", "shaft:1,0.2,0,30,300", "--quiet", "-o", out, ...more).out);
+  assert.deepEqual(printed, readJson(join(out, "metrics.json")), "what is printed is what is written");
+  return { out, metrics: printed };
+};
+const isCount = (value) => Number.isInteger(value) && value >= 0;
+const isShare = (value) => value >= 0 && value <= 1;
+
+test("an impostor is judged on its file, under each sampling", () => {
+  const { out, metrics } = bake("one", "--views", "8");
+  assert.deepEqual(readdirSync(out).filter((name) => !name.startsWith(".")).sort(), ["impostors.glb", "metrics.json"]);
+  assert.equal(metrics.technique, "layered");
+  assert.equal(metrics.triangles, 2 * metrics.quads);
+  const { image } = metrics;
+  assert.equal(image.views, 8);
+  assert.equal(image.gap_pixels, 0);
+  assert.ok(image.judged_pixels > 0 && image.max_parallax_ratio > 0 && image.max_parallax_ratio <= 1);
+  for (const errors of [image, image.at_reference]) assert.ok(isShare(errors.mean_error) && isShare(errors.mean_flip) && errors.mean_flip > 0);
+  assert.deepEqual(Object.keys(image.samplings).sort(), ["bilinear", "mipmapped", "nearest"]);
+  for (const sampling of Object.values(image.samplings)) assert.ok(isCount(sampling.gap_pixels) && sampling.silhouette_bloat_px >= 0);
+  assert.deepEqual(image.samplings.nearest, { gap_pixels: image.gap_pixels, silhouette_bloat_px: image.silhouette_bloat_px });
+});
+
+test("the same whatever the thread count; other views with another seed", () => {
+  const one = bake("threads1", "--views", "8", "--threads", "1").metrics;
+  assert.deepEqual(bake("threads3", "--views", "8", "--threads", "3").metrics, one);
+  assert.notDeepEqual(bake("seed", "--views", "8", "--seed", "9").metrics.image, one.image);
+});
+
+test("without views the image metrics are left out", () => {
+  assert.equal(bake("blind", "--views", "0").metrics.image, null);
+});
