@@ -16,7 +16,7 @@ constexpr double kQuarterPi = 0.78539816339744830962;
 std::array<double, 6> gaps_between(const Box& object, const Box& cell) {
   std::array<double, 6> gaps{};
   for (int axis = 0; axis < 3; ++axis) {
-    const auto low = static_cast<std::size_t>(2 * axis);
+    const auto low = 2 * static_cast<std::size_t>(axis);
     gaps[low] = cell.min[axis] - object.max[axis];
     gaps[low + 1] = object.min[axis] - cell.max[axis];
   }
@@ -27,7 +27,7 @@ std::array<double, 6> gaps_between(const Box& object, const Box& cell) {
 double distance_between(const std::array<double, 6>& gaps) {
   Vec3 apart(0.0);
   for (int axis = 0; axis < 3; ++axis) {
-    const auto low = static_cast<std::size_t>(2 * axis);
+    const auto low = 2 * static_cast<std::size_t>(axis);
     apart[axis] = std::max({0.0, gaps[low], gaps[low + 1]});
   }
   return glm::length(apart);
@@ -75,7 +75,7 @@ std::vector<BakeRequest> environment_map_requests(const Scene& scene, const Box&
   return requests;
 }
 
-std::vector<BakeRequest> view_independent_requests(const Scene& scene, std::vector<std::uint32_t> objects, double distance_m,
+std::vector<BakeRequest> view_independent_requests(const Scene& scene, const std::vector<std::uint32_t>& objects, double distance_m,
                                                    std::uint32_t per_face_side) {
   if (objects.empty() || per_face_side == 0 || !(distance_m > 0.0))
     throw Failure(ErrorWord::kBadUsage, "view-independent impostors of " + std::to_string(objects.size()) + " objects from " +

@@ -22,7 +22,7 @@ namespace standin {
 
 /// 6 * per_face_side^2 shafts about the centre of the objects' bounds, one for each patch of a cube's faces in equal angles. Every
 /// viewpoint at least `distance_m` from that centre lies in one of them. per_face_side >= 1, objects ascending and at least one.
-[[nodiscard]] std::vector<BakeRequest> view_independent_requests(const Scene& scene, std::vector<std::uint32_t> objects, double distance_m,
-                                                                 std::uint32_t per_face_side);
+[[nodiscard]] std::vector<BakeRequest> view_independent_requests(const Scene& scene, const std::vector<std::uint32_t>& objects,
+                                                                 double distance_m, std::uint32_t per_face_side);
 
 }  // namespace standin
