@@ -6,9 +6,10 @@ import test from "node:test";
 import { city, expectExit, readJson, scratch } from "./standin.mjs";
 
 const folder = scratch();
+const cellOf = (flags) => (flags.includes("--view-cell") ? [] : ["--view-cell", "shaft:1,0.2,0,30,300"]);
 const bake = (name, ...more) => {
   const out = join(folder, name);
-  const printed = JSON.parse(expectExit(0, "bake", city, "--objects", "2", "--view-cell", "shaft:1,0.2,0,30,300", "--quiet", "-o", out, ...more).out);
+  const printed = JSON.parse(expectExit(0, "bake", city, "--objects", "2", "--quiet", "-o", out, ...cellOf(more), ...more).out);
   assert.deepEqual(printed, readJson(join(out, "metrics.json")), "what is printed is what is written");
   return { out, metrics: printed };
 };
@@ -30,12 +31,25 @@ test("an impostor is judged on its file, under each sampling", () => {
   assert.deepEqual(image.samplings.nearest, { gap_pixels: image.gap_pixels, silhouette_bloat_px: image.silhouette_bloat_px });
 });
 
+const timeless = (metrics) => JSON.parse(JSON.stringify(metrics, (key, value) => (key === "seconds" ? undefined : value)));
+
 test("the same whatever the thread count; other views with another seed", () => {
-  const one = bake("threads1", "--views", "8", "--threads", "1").metrics;
-  assert.deepEqual(bake("threads3", "--views", "8", "--threads", "3").metrics, one);
+  const one = timeless(bake("threads1", "--views", "8", "--threads", "1").metrics);
+  assert.deepEqual(timeless(bake("threads3", "--views", "8", "--threads", "3").metrics), one);
   assert.notDeepEqual(bake("seed", "--views", "8", "--seed", "9").metrics.image, one.image);
 });
 
 test("without views the image metrics are left out", () => {
   assert.equal(bake("blind", "--views", "0").metrics.image, null);
+});
+
+test("a depth mesh is smaller, is read back from its file, and promises nothing", () => {
+  const near = ["--views", "8", "--view-cell", "shaft:1,0.2,0,30,200"];
+  const layered = bake("near", ...near).metrics;
+  const mesh = bake("mesh", "--technique", "tdm", ...near).metrics;
+  assert.deepEqual([layered.guarantee, mesh.guarantee], ["nearest", "none"]);
+  assert.ok(layered.layers > 1 && mesh.layers === layered.layers);
+  assert.ok(mesh.triangles > 2 && mesh.quads === 0);
+  assert.ok(mesh.texture_bytes < layered.texture_bytes, `${mesh.texture_bytes} bytes of ${layered.texture_bytes}`);
+  assert.ok(mesh.image.judged_pixels > 1000 && mesh.image.gap_pixels < 1e-3 * mesh.image.judged_pixels);
 });

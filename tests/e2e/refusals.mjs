@@ -76,8 +76,6 @@ const kRows = [
   ["another job's result folder", ["place", city, "--target", target, "--budget-ms", "1000", "-o", placed], 2, "output_occupied", /placed/],
   ["a check of no result", ["check", inputs], 2, "file_missing", /placement\.json/],
   ["bad view cells", ["bake", city, "--view-cell", "sphere:1,2,3", "-o", out], 2, "bad_usage", /sphere:1,2,3/],
-  ["a technique that is not built yet", ["bake", city, "--technique", "tdm", "--view-cell", "shaft:1,0,0,45,60", "-o", out], 2, "bad_usage",
-   /--technique tdm.*layered/],
   ["a technique that nobody knows", ["bake", city, "--technique", "magic", "--view-cell", "shaft:1,0,0,45,60", "-o", out], 2, "bad_usage", /magic/],
   ["objects that are not there", ["bake", city, "--objects", "7,150", "--view-cell", "shaft:1,0,0,45,60", "-o", out], 2, "bad_usage", /150/],
   ["a city too small to be one", ["make-city", "--objects", "3", "-o", join(out, "city.glb")], 2, "bad_usage", /3/],
