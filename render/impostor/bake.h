@@ -28,6 +28,7 @@ struct BakeQuality {
   bool strict = true;      // layer set-up; false only for tests
   bool leave_out = true;   // what cannot change the result: culling of a single layer, texturing of untextured surfaces; false: for tests
   bool supercover = true;  // closed coverage; false (centre sampling) only for tests
+  bool seal_rims = true;   // surfaces cover what any ray through them may pass on their layer (shift_bound.h); false: for tests and meshes
 };
 
 struct BakeRequest {
@@ -41,6 +42,7 @@ struct ImpostorPlan {
   const char* why_not = "";  // "cluster reaches into the view cell", "too many layers", "texture too large"
   ImpostorFrame frame;
   std::vector<Layer> layers;
+  LayerSetup setup;
 };
 
 /// The objects' bounds are taken as one box in the frame of the view cell. Never throws for geometry: says why not.

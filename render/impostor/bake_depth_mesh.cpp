@@ -24,12 +24,19 @@ VoxelLattice lattice_of(const std::vector<LayerImage>& images, int ring) {
   return voxel_lattice(std::move(opaque), ring);
 }
 
+/// A mesh has a ring of its own.
+BakeQuality unsealed(BakeQuality quality) {
+  quality.seal_rims = false;
+  return quality;
+}
+
 }  // namespace
 
 DepthMeshImpostor bake_depth_mesh(const Scene& scene, const TexturePyramids& textures, const BakeRequest& request, const Camera& camera,
                                   const BakeQuality& quality, const DepthMeshQuality& mesh_quality, const WorkBudget& budget) {
   DepthMeshSummary summary;
-  const Recording recording = timed(summary.record_s, [&] { return record_request(scene, textures, request, camera, quality, budget); });
+  const Recording recording =
+      timed(summary.record_s, [&] { return record_request(scene, textures, request, camera, unsealed(quality), budget); });
   VoxelLattice lattice;
   const DepthMesh initial = timed(summary.mesh_s, [&] {
     lattice = lattice_of(recording.images, mesh_quality.ring);

@@ -21,13 +21,20 @@ class ClosedCoverage {
   /// visit(y, first_x, last_x) for each row of texels the piece touches, within the texture.
   template <class Visit>
   void for_each_row(const Piece& piece, const Visit& visit) {
+    for_each_row(piece, Vec2(0.0), visit);
+  }
+
+  /// The same for the piece with so many texels more to each side, along x and y.
+  template <class Visit>
+  void for_each_row(const Piece& piece, const Vec2& margin, const Visit& visit) {
     if (piece.count == 0) return;
+    margin_ = margin;
     double top = piece.vertices[0].position.y, bottom = top;
     for (std::size_t i = 1; i < piece.count; ++i) {
       top = std::min(top, piece.vertices[i].position.y);
       bottom = std::max(bottom, piece.vertices[i].position.y);
     }
-    const Range rows = touched(top, bottom, height_);
+    const Range rows = touched(top - margin.y, bottom + margin.y, height_);
     if (rows.first > rows.last) return;
     spans_.assign(static_cast<std::size_t>(rows.last) - static_cast<std::size_t>(rows.first) + 1, Span{});
     if (rows.first == rows.last && top >= rows.first && bottom <= rows.first + 1.0) {
@@ -38,7 +45,7 @@ class ClosedCoverage {
     }
     for (int row = rows.first; row <= rows.last; ++row) {
       const Span& span = spans_[static_cast<std::size_t>(row - rows.first)];
-      const Range columns = touched(span.low, span.high, width_);
+      const Range columns = touched(span.low - margin.x, span.high + margin.x, width_);
       if (columns.first <= columns.last)
         visit(static_cast<std::uint32_t>(row), static_cast<std::uint32_t>(columns.first), static_cast<std::uint32_t>(columns.last));
     }
@@ -69,18 +76,20 @@ class ClosedCoverage {
 
   void add_edge(Vec2 a, Vec2 b, const Range& rows) {
     if (b.y < a.y || (b.y == a.y && b.x < a.x)) std::swap(a, b);  // the same order for both neighbours of an edge
-    const int first = static_cast<int>(std::max(std::ceil(a.y - kSlack) - 1.0, static_cast<double>(rows.first)));
-    const int last = static_cast<int>(std::min(std::floor(b.y + kSlack), static_cast<double>(rows.last)));
+    const int first = static_cast<int>(std::max(std::ceil(a.y - margin_.y - kSlack) - 1.0, static_cast<double>(rows.first)));
+    const int last = static_cast<int>(std::min(std::floor(b.y + margin_.y + kSlack), static_cast<double>(rows.last)));
     const double x_per_y = b.y > a.y ? (b.x - a.x) / (b.y - a.y) : 0.0;
     for (int row = first; row <= last; ++row) {
       Span& span = spans_[static_cast<std::size_t>(row - rows.first)];
-      span.extend(row <= a.y ? a.x : a.x + (std::min<double>(row, b.y) - a.y) * x_per_y);
-      span.extend(row + 1.0 >= b.y ? b.x : a.x + (std::max(row + 1.0, a.y) - a.y) * x_per_y);
+      const double upper = row - margin_.y, lower = row + 1.0 + margin_.y;
+      span.extend(upper <= a.y ? a.x : a.x + (std::min(upper, b.y) - a.y) * x_per_y);
+      span.extend(lower >= b.y ? b.x : a.x + (std::max(lower, a.y) - a.y) * x_per_y);
     }
   }
 
   std::uint32_t width_ = 0;
   std::uint32_t height_ = 0;
+  Vec2 margin_{0.0};
   std::vector<Span> spans_;
 };
 

@@ -208,6 +208,7 @@ ImpostorPlan with_layers(const Choice& choice, std::uint32_t max_layers) {
   if (!layers) return plan.why_not = "too many layers", plan;
   plan.possible = true;
   plan.frame = draft.frame;
+  plan.setup = draft.setup;
   for (const LayerDistance& layer : *layers)
     plan.layers.push_back({layer.t + draft.setup.s, layer.near + draft.setup.s, layer.far + draft.setup.s});
   return plan;

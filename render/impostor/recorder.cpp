@@ -4,12 +4,14 @@
 #include <optional>
 
 #include "render/impostor/coverage.h"
+#include "render/impostor/outer_rims.h"
 #include "render/impostor/slab_piece.h"
 #include "render/impostor/surface.h"
 
 namespace standin {
 namespace {
 
+constexpr float kShiftOnly = 4.0F;  // added to the order of surfaces that only rays beside the reference viewpoint meet in the texel
 constexpr float kTouchOnly = 2.0F;  // added to the order of surfaces that miss the texel's centre; depths within a layer are in [0,1]
 
 /// A triangle's interior over the image: barycentric coordinates and depth at any texel coordinate, without dividing per corner. Along the
@@ -69,13 +71,14 @@ struct SurfacePoint {
 class Recorder {
  public:
   Recorder(const Scene& scene, const TexturePyramids& textures, const ImpostorFrame& frame, std::span<const Layer> layers,
-           Coverage coverage, Texturing texturing)
+           Coverage coverage, Texturing texturing, const ShiftBound* shifts)
       : scene_(scene),
         textures_(textures),
         frame_(frame),
         layers_(layers),
         coverage_(coverage),
         texture_all_(texturing == Texturing::kEverywhere),
+        shifts_(shifts),
         rows_(frame.width, frame.height),
         images_(layers.size(), LayerImage(frame.width, frame.height)) {}
 
@@ -83,7 +86,10 @@ class Recorder {
     for (std::uint32_t i = 0; i < object.part_count; ++i) draw_part(object, scene_.parts[object.first_part + i], budget);
   }
 
-  [[nodiscard]] std::vector<LayerImage> take() { return std::move(images_); }
+  [[nodiscard]] std::vector<LayerImage> take() {
+    if (shifts_ != nullptr) remove_outer_rims(images_, kShiftOnly);
+    return std::move(images_);
+  }
 
  private:
   struct Triangle {
@@ -149,6 +155,36 @@ class Recorder {
     rows_.for_each_row(piece, [&](std::uint32_t y, std::uint32_t first, std::uint32_t last) {
       for (std::uint32_t x = first; x <= last; ++x) draw_texel(x, y, piece, layer, plane, triangle, surface);
     });
+    if (shifts_ == nullptr || !draws_outline(surface)) return;
+    const Vec2 margin = most_shift(piece, layers_[layer].distance_m);
+    rows_.for_each_row(piece, margin, [&](std::uint32_t y, std::uint32_t first, std::uint32_t last) {
+      for (std::uint32_t x = first; x <= last; ++x) draw_shifted_texel(x, y, piece, margin, layer, plane, triangle, surface);
+    });
+  }
+
+  [[nodiscard]] Vec2 most_shift(const Piece& piece, double layer_m) const {
+    double least = kInfinity, most = 0.0;
+    for (std::size_t i = 0; i < piece.count; ++i) {
+      least = std::min(least, piece.vertices[i].inverse_depth);
+      most = std::max(most, piece.vertices[i].inverse_depth);
+    }
+    return glm::max(shifts_->texels(1.0 / most, layer_m), shifts_->texels(1.0 / least, layer_m));
+  }
+
+  void draw_shifted_texel(std::uint32_t x, std::uint32_t y, const Piece& piece, const Vec2& margin, std::size_t layer,
+                          const TrianglePlane& plane, const Triangle& triangle, const Surface& surface) {
+    const RecordedTexel drawn = images_[layer].get(x, y);
+    if (drawn.opaque() && drawn.order < kShiftOnly) return;
+    const Vec2 centre(x + 0.5, y + 0.5);
+    const std::optional<SurfacePoint> inside = point_at(centre, layer, plane);
+    const SurfacePoint found = inside ? *inside : outline_point(centre, piece);
+    const TexturePyramid* mask = surface.mask();
+    if (mask != nullptr && !mask_may_pass(x, y, margin, piece, triangle.attributes, *mask, found)) return;
+    const float order = depth_in(layers_[layer], found.depth) + kShiftOnly;
+    if (drawn.opaque() && drawn.order <= order) return;
+    RecordedTexel& texel = images_[layer].at(x, y);
+    texel.order = order;
+    texel.rgba = surface.colour(triangle.attributes, found.barycentric, level_of_detail(plane, triangle.attributes, surface, found));
   }
 
   void draw_texel(std::uint32_t x, std::uint32_t y, const Piece& piece, std::size_t layer, const TrianglePlane& plane,
@@ -160,7 +196,7 @@ class Recorder {
     if (at_centre && mask != nullptr) at_centre = mask->passes(triangle.attributes.uv_at(found->barycentric));
     if (!at_centre && (!draws_outline(surface) || holds_centre(images_[layer].get(x, y)))) return;
     if (!found) found = outline_point(centre, piece);
-    if (!at_centre && mask != nullptr && !mask_may_pass(x, y, piece, triangle.attributes, *mask, *found)) return;
+    if (!at_centre && mask != nullptr && !mask_may_pass(x, y, Vec2(0.0), piece, triangle.attributes, *mask, *found)) return;
 
     const float order = depth_in(layers_[layer], found->depth) + (at_centre ? 0.0F : kTouchOnly);
     RecordedTexel& texel = images_[layer].at(x, y);
@@ -195,11 +231,11 @@ class Recorder {
     return thickness > 0.0 ? static_cast<float>(std::clamp((depth - layer.near_m) / thickness, 0.0, 1.0)) : 0.0F;
   }
 
-  /// Whether the mask has an opaque texel anywhere in what the piece shows within impostor texel (x, y).
-  [[nodiscard]] static bool mask_may_pass(std::uint32_t x, std::uint32_t y, const Piece& piece, const TriangleAttributes& attributes,
-                                          const TexturePyramid& mask, const SurfacePoint& point) {
+  /// Whether the mask has an opaque texel anywhere in what the piece shows within impostor texel (x, y) with a margin.
+  [[nodiscard]] static bool mask_may_pass(std::uint32_t x, std::uint32_t y, const Vec2& margin, const Piece& piece,
+                                          const TriangleAttributes& attributes, const TexturePyramid& mask, const SurfacePoint& point) {
     Vec2 uv_min = attributes.uv_at(point.barycentric), uv_max = uv_min;
-    const Piece inside = texel_piece(piece, x, y);
+    const Piece inside = texel_piece(piece, x, y, margin);
     for (std::size_t i = 0; i < inside.count; ++i) {
       const Vec2 uv = attributes.uv_at(inside.vertices[i].barycentric());
       uv_min = glm::min(uv_min, uv);
@@ -226,6 +262,7 @@ class Recorder {
   std::span<const Layer> layers_;
   Coverage coverage_;
   bool texture_all_;
+  const ShiftBound* shifts_;
   ClosedCoverage rows_;
   std::vector<LayerImage> images_;
   std::vector<FrameVertex> vertices_;  // of the part
@@ -235,8 +272,8 @@ class Recorder {
 
 std::vector<LayerImage> record_layers(const Scene& scene, const TexturePyramids& textures, std::span<const std::uint32_t> objects,
                                       const ImpostorFrame& frame, std::span<const Layer> layers, Coverage coverage,
-                                      const WorkBudget& budget, Texturing texturing) {
-  Recorder recorder(scene, textures, frame, layers, coverage, texturing);
+                                      const WorkBudget& budget, Texturing texturing, const ShiftBound* shifts) {
+  Recorder recorder(scene, textures, frame, layers, coverage, texturing, shifts);
   for (const std::uint32_t id : objects) {
     budget.check();
     recorder.draw_object(scene.objects.at(id), budget);

@@ -15,6 +15,7 @@
 #include "render/base/work.h"
 #include "render/impostor/impostor.h"
 #include "render/impostor/layer_image.h"
+#include "render/impostor/shift_bound.h"
 #include "render/impostor/texture_pyramid.h"
 
 namespace standin {
@@ -25,12 +26,16 @@ enum class Coverage { kClosed, kFuzzy, kCentre };
 /// kEverywhere, for tests: surfaces without texture are given one white texel and go the way of textured ones, to the same bytes.
 enum class Texturing { kWhereTextured, kEverywhere };
 
+/// With `shifts`, texels are drawn, too, that a ray through the surface may pass on the layer's plane, from anywhere in the view cell. So
+/// every ray that meets a surface meets an opaque texel on the plane of its layer, whatever lies beside it. They give way to all that
+/// touches the texel itself.
+///
 /// One image per layer, near to far. `layers` must not be empty; their ranges adjoin, and what lies before the first or beyond the last is
 /// taken into that one. Every vertex must lie in front of the reference viewpoint.
 [[nodiscard]] std::vector<LayerImage> record_layers(const Scene& scene, const TexturePyramids& textures,
                                                     std::span<const std::uint32_t> objects, const ImpostorFrame& frame,
                                                     std::span<const Layer> layers, Coverage coverage, const WorkBudget& budget = {},
-                                                    Texturing texturing = Texturing::kWhereTextured);
+                                                    Texturing texturing = Texturing::kWhereTextured, const ShiftBound* shifts = nullptr);
 
 /// How far from the reference viewpoint, along `forward`, the surface in a recorded texel lies: at the texel's centre, or nearest to it.
 [[nodiscard]] double depth_m(const RecordedTexel& texel, const Layer& layer);

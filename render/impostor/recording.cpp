@@ -1,6 +1,7 @@
 #include "render/impostor/recording.h"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 #include "render/base/error.h"
@@ -47,6 +48,26 @@ Coverage coverage_of(const BakeQuality& quality) {
   return quality.fuzzy ? Coverage::kFuzzy : Coverage::kClosed;
 }
 
+double most_shift(const ShiftBound& shifts, const std::vector<Layer>& layers) {
+  double most = 0.0;
+  for (const Layer& layer : layers)
+    for (const double depth_m : {layer.near_m, layer.far_m}) {
+      const Vec2 texels = shifts.texels(depth_m, layer.distance_m);
+      most = std::max({most, texels.x, texels.y});
+    }
+  return most;
+}
+
+/// Room for so many texels beyond the objects on each side.
+ImpostorFrame padded(ImpostorFrame frame, double texels) {
+  constexpr double kMostTexels = 2.0;  // layers a texel apart shift no further; only a test's may
+  const auto room = static_cast<std::uint32_t>(std::ceil(std::min(texels, kMostTexels)));
+  frame.slope_min += static_cast<double>(room) * Vec2(-frame.slope_step.x, frame.slope_step.y);
+  frame.width += 2 * room;
+  frame.height += 2 * room;
+  return frame;
+}
+
 }  // namespace
 
 Recording record_request(const Scene& scene, const TexturePyramids& textures, const BakeRequest& request, const Camera& camera,
@@ -57,9 +78,11 @@ Recording record_request(const Scene& scene, const TexturePyramids& textures, co
   if (!plan.possible)
     throw Failure(ErrorWord::kImpostorImpossible, "impostor of " + std::to_string(request.objects.size()) + " objects from object " +
                                                       std::to_string(request.objects.front()) + " on: " + plan.why_not);
-  return {plan.frame, plan.layers,
-          record_layers(scene, textures, request.objects, plan.frame, plan.layers, coverage_of(quality), budget,
-                        quality.leave_out ? Texturing::kWhereTextured : Texturing::kEverywhere),
+  const ShiftBound shifts(plan.setup, plan.frame);
+  const ImpostorFrame frame = quality.seal_rims ? padded(plan.frame, most_shift(shifts, plan.layers)) : plan.frame;
+  return {frame, plan.layers,
+          record_layers(scene, textures, request.objects, frame, plan.layers, coverage_of(quality), budget,
+                        quality.leave_out ? Texturing::kWhereTextured : Texturing::kEverywhere, quality.seal_rims ? &shifts : nullptr),
           quality.fuzzy && holds_masked(scene, request.objects)};
 }
 

@@ -56,11 +56,11 @@ Piece slab_piece(const FrameTriangle& triangle, const ImpostorFrame& frame, doub
   return piece;
 }
 
-Piece texel_piece(const Piece& piece, std::uint32_t x, std::uint32_t y) {
-  Piece result = clipped(piece, 0, x, 1.0);
-  result = clipped(result, 0, x + 1.0, -1.0);
-  result = clipped(result, 1, y, 1.0);
-  return clipped(result, 1, y + 1.0, -1.0);
+Piece texel_piece(const Piece& piece, std::uint32_t x, std::uint32_t y, const Vec2& margin) {
+  Piece result = clipped(piece, 0, x - margin.x, 1.0);
+  result = clipped(result, 0, x + 1.0 + margin.x, -1.0);
+  result = clipped(result, 1, y - margin.y, 1.0);
+  return clipped(result, 1, y + 1.0 + margin.y, -1.0);
 }
 
 PieceVertex nearest_on_outline(const Piece& piece, const Vec2& point) {

@@ -53,8 +53,8 @@ using FrameTriangle = std::array<FrameVertex, 3>;
 
 [[nodiscard]] Piece slab_piece(const FrameTriangle& triangle, const ImpostorFrame& frame, double near_m, double far_m);
 
-/// The part of a piece in the closed texel [x, x+1] x [y, y+1].
-[[nodiscard]] Piece texel_piece(const Piece& piece, std::uint32_t x, std::uint32_t y);
+/// The part of a piece in the closed texel [x, x+1] x [y, y+1] with a margin around it.
+[[nodiscard]] Piece texel_piece(const Piece& piece, std::uint32_t x, std::uint32_t y, const Vec2& margin = Vec2(0.0));
 
 /// The point of the piece's outline nearest to `point`; the piece has at least one vertex.
 [[nodiscard]] PieceVertex nearest_on_outline(const Piece& piece, const Vec2& point);

@@ -64,7 +64,7 @@ Verdict judged(const Case& c, const ViewCell& cell, const BakeQuality& quality, 
   Camera camera;
   camera.width = camera.height = 256;
   const Impostor impostor = bake_layered(c.scene, {{0}, cell}, camera, quality);
-  const Verdict verdict = test::judge(c.surfaces, impostor, camera.pixel_angle_rad(), 400, seed);
+  const Verdict verdict = test::judge(c.surfaces, impostor, camera.pixel_angle_rad(), 900, seed);
   return verdict;
 }
 
