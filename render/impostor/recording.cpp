@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <string>
 
-#include "render/base/error.h"
 #include "render/impostor/recorder.h"
 
 namespace standin {
@@ -49,14 +48,30 @@ Coverage coverage_of(const BakeQuality& quality) {
 
 }  // namespace
 
+RequestPlanner::RequestPlanner(const Scene& scene, const BakeRequest& request) {
+  validate(scene, request);
+  bounds_ = bounds_of(scene, request.objects);
+  points_ = world_vertices(scene, request.objects);
+}
+
+ImpostorPlan RequestPlanner::plan(const ViewCell& cell, const Camera& camera, const BakeQuality& quality) const {
+  return plan_impostor(bounds_, points_, cell, camera, quality);
+}
+
+ImpostorPlan plan_request(const Scene& scene, const BakeRequest& request, const Camera& camera, const BakeQuality& quality) {
+  ImpostorPlan plan = RequestPlanner(scene, request).plan(request.view_cell, camera, quality);
+  if (!plan.possible) throw impossible(request, plan.why_not);
+  return plan;
+}
+
+Failure impossible(const BakeRequest& request, const std::string& why) {
+  return {ErrorWord::kImpostorImpossible, "impostor of " + std::to_string(request.objects.size()) + " objects from object " +
+                                              std::to_string(request.objects.front()) + " on: " + why};
+}
+
 Recording record_request(const Scene& scene, const TexturePyramids& textures, const BakeRequest& request, const Camera& camera,
                          const BakeQuality& quality, const WorkBudget& budget) {
-  validate(scene, request);
-  const ImpostorPlan plan =
-      plan_impostor(bounds_of(scene, request.objects), world_vertices(scene, request.objects), request.view_cell, camera, quality);
-  if (!plan.possible)
-    throw Failure(ErrorWord::kImpostorImpossible, "impostor of " + std::to_string(request.objects.size()) + " objects from object " +
-                                                      std::to_string(request.objects.front()) + " on: " + plan.why_not);
+  const ImpostorPlan plan = plan_request(scene, request, camera, quality);
   return {plan.frame, plan.layers,
           record_layers(scene, textures, request.objects, plan.frame, plan.layers, coverage_of(quality), budget,
                         quality.leave_out ? Texturing::kWhereTextured : Texturing::kEverywhere),
