@@ -7,11 +7,11 @@
 // Triangles that no one in the view cell can face are dropped; what the reference viewpoint does not see has its own surface's colour
 // (sprite_colours.h).
 //
-// Nothing is promised (guarantee "none"). Original vertices and triangle centres appear within alpha of their place from the reference
-// viewpoint and the cell's corners; points between them and other viewpoints, deep in a shaft or inside a box, are not looked at. Detail
-// that the mesh has not has no parallax of its own and hides nothing: what it hides in the image comes out from behind it nowhere, and
-// where the image shows it, it is painted on what lies behind. Outlines may lie inside the original's by up to alpha, and where surfaces
-// meet without sharing vertices, a gap of that width may open.
+// Nothing is promised (guarantee "none"). What is judged, original vertices and triangle centres, appears within alpha of its place from
+// the reference viewpoint and the cell's corners; points between them and other viewpoints, deep in a shaft or inside a box, are not looked
+// at. Disocclusion: detail that the mesh lacks is painted on what lies behind it, so it has no parallax of its own, and uncovers nothing as
+// the viewer moves. Holes and outlines: the mesh may end inside the original's outline by a fraction of alpha, and open as narrow a gap
+// where parts meet without sharing vertices. Masked surfaces, whose shape lies in their texture, are refused.
 #pragma once
 
 #include "render/impostor/bake.h"

@@ -8,8 +8,9 @@ namespace {
 constexpr int kBins = 96;  // a side
 constexpr double kRounding = 1e-9;
 
-/// Where the ray from the origin through `point` meets the triangle, as a multiple of `point`.
-std::optional<double> meets(const std::array<Vec3, 3>& t, const Vec3& point) {
+}  // namespace
+
+std::optional<double> ray_meets(const std::array<Vec3, 3>& t, const Vec3& point) {
   const Vec3 n = glm::cross(t[1] - t[0], t[2] - t[0]);
   const double along = glm::dot(n, point);
   if (along == 0.0) return std::nullopt;
@@ -19,8 +20,6 @@ std::optional<double> meets(const std::array<Vec3, 3>& t, const Vec3& point) {
   const double least = std::min({weights.x / sum, weights.y / sum, weights.z / sum});
   return least >= -kRounding ? std::optional(glm::dot(n, t[0]) / along) : std::nullopt;
 }
-
-}  // namespace
 
 double apparent_angle(const Vec3& viewpoint, const Vec3& a, const Vec3& b) {
   return std::atan2(glm::length(glm::cross(a - viewpoint, b - a)), glm::dot(a - viewpoint, b - viewpoint));  // a x b = a x (b - a)
@@ -73,7 +72,7 @@ double SpriteError::error_along_ray(const Vec3& point) const {
   const auto bin = bin_of(slope(point));
   double least = std::numeric_limits<double>::infinity();
   for (const std::uint32_t i : bins_[static_cast<std::size_t>(bin[1] * kBins + bin[0])])
-    if (const auto share = meets(coarse_[i], point)) least = std::min(least, apparent_angle(viewpoints_, point, *share * point));
+    if (const auto share = ray_meets(coarse_[i], point)) least = std::min(least, apparent_angle(viewpoints_, point, *share * point));
   return least;
 }
 

@@ -17,6 +17,9 @@ namespace standin {
 /// The largest from any of the viewpoints.
 [[nodiscard]] double apparent_angle(std::span<const Vec3> viewpoints, const Vec3& a, const Vec3& b);
 
+/// Where the ray from the origin through `point` meets the triangle, as a multiple of `point`.
+[[nodiscard]] std::optional<double> ray_meets(const std::array<Vec3, 3>& triangle, const Vec3& point);
+
 /// All points from the reference viewpoint, which is the origin.
 class SpriteError {
  public:

@@ -4,14 +4,16 @@
 
 #include <cmath>
 
+#include "render/impostor/sprite_contraction.h"
 #include "render/impostor/sprite_error.h"
 
 namespace standin {
 namespace {
 
-// The search, in units of alpha at the nearest point: depth may be off by far more than alpha where viewers look along it.
-constexpr double kLargestError = 64.0;
-constexpr double kSmallestError = 0.125;
+// The search for the largest clusters, in units of alpha at the nearest point.
+constexpr double kLargestError = 4.0;
+constexpr double kSmallestError = 0.03;
+constexpr double kClusteringShare = 0.25;  // of alpha; contraction has the rest
 constexpr double kErrorStep = 0.70710678118654752440;
 
 struct WeldedSurface {
@@ -36,7 +38,8 @@ WeldedSurface welded(const std::vector<SurfaceTriangle>& surface) {
 }
 
 /// The triangles with the vertices that they use.
-SpriteMesh compact(const WeldedSurface& surface, std::span<const unsigned int> indices) {
+SpriteMesh compact(const WeldedSurface& surface) {
+  const std::vector<unsigned int>& indices = surface.indices;
   std::vector<std::uint32_t> place(surface.positions.size(), 0);  // + 1
   SpriteMesh mesh;
   for (std::size_t i = 0; i + 2 < indices.size(); i += 3) {
@@ -54,18 +57,7 @@ SpriteMesh compact(const WeldedSurface& surface, std::span<const unsigned int> i
   return mesh;
 }
 
-/// Simplified to an error in metres, within `surface`'s own vertices.
-using Simplifier = std::vector<unsigned int> (*)(const WeldedSurface& surface, double error_m);
-
-std::vector<unsigned int> by_contraction(const WeldedSurface& surface, double error_m) {
-  std::vector<unsigned int> indices(surface.indices.size());
-  const float* positions = &surface.positions.front().x;
-  const float scale = meshopt_simplifyScale(positions, surface.positions.size(), sizeof(glm::vec3));
-  indices.resize(meshopt_simplify(indices.data(), surface.indices.data(), surface.indices.size(), positions, surface.positions.size(),
-                                  sizeof(glm::vec3), 0, static_cast<float>(error_m) / scale, 0, nullptr));
-  return indices;
-}
-
+/// Simplified to an error in metres, within its own vertices.
 std::vector<unsigned int> by_clustering(const WeldedSurface& surface, double error_m) {
   std::vector<unsigned int> indices(surface.indices.size());
   const float* positions = &surface.positions.front().x;
@@ -95,20 +87,17 @@ std::vector<std::array<Vec3, 3>> corners_of(const SpriteMesh& mesh) {
 SpriteMesh sprite_mesh(const std::vector<SurfaceTriangle>& surface, const Vec3& forward, std::span<const Vec3> viewpoints, double alpha_rad,
                        double nearest_m, const WorkBudget& budget) {
   const WeldedSurface original = welded(surface);
-  SpriteMesh best = compact(original, original.indices);
-  if (best.triangles.empty()) return best;
   const std::vector<Vec3> points = judged_points(original);
-  for (const Simplifier simplified : {Simplifier{by_contraction}, Simplifier{by_clustering}})
-    for (double error = kLargestError; error >= kSmallestError; error *= kErrorStep) {
-      budget.check();
-      const std::vector<unsigned int> indices = simplified(original, error * alpha_rad * nearest_m);
-      if (indices.size() / 3 >= best.triangles.size()) break;  // finer ones have no fewer
-      SpriteMesh mesh = compact(original, indices);
-      if (!SpriteError(corners_of(mesh), forward, viewpoints).within(points, alpha_rad)) continue;
-      best = std::move(mesh);
-      break;
-    }
-  return best;
+  SpriteMesh base = compact(original);
+  for (double error = kLargestError; error >= kSmallestError && !base.triangles.empty(); error *= kErrorStep) {
+    budget.check();
+    SpriteMesh clustered = compact({original.positions, by_clustering(original, error * alpha_rad * nearest_m)});
+    if (clustered.triangles.size() >= base.triangles.size()) break;
+    if (!SpriteError(corners_of(clustered), forward, viewpoints).within(points, kClusteringShare * alpha_rad)) continue;
+    base = std::move(clustered);
+    break;
+  }
+  return contracted(base, points, viewpoints, alpha_rad, budget);
 }
 
 }  // namespace standin

@@ -1,9 +1,8 @@
 // The coarse mesh of a LOD-sprite: as few triangles as the error criterion allows.
 //
-// The union of the cluster's surfaces is welded and simplified (meshoptimizer) to ever smaller errors, until all original vertices and
-// triangle centres pass the criterion (sprite_error.h). Edges are contracted, which keeps the shape together; and, where that leaves more
-// triangles, vertices are clustered without regard to topology. What passes with the fewest triangles is taken; the original surface always
-// does.
+// The cluster's surfaces are welded to one mesh. Vertices are clustered first (meshoptimizer), without regard to topology and within a
+// quarter of what the criterion allows, so that the many loose parts of a model grow together; then edges are contracted as far as it
+// allows (sprite_contraction.h). Judged are all original vertices and triangle centres.
 #pragma once
 
 #include "render/base/work.h"
