@@ -68,7 +68,7 @@ void for_each_triangle(const TexturedMesh& mesh, const Visit& visit) {
 }
 
 double drawn_texels(const Impostor& impostor, double nearest_m, double texel_angle_rad) {
-  if (impostor.technique == Technique::kLayered) return static_cast<double>(impostor.texel_count());
+  if (!is_mesh(impostor.technique)) return static_cast<double>(impostor.texel_count());
   double texels = 0.0;
   for_each_triangle(impostor.mesh, [&](const Corners& triangle) {
     const auto depth_m = [&](const Vec3& corner) { return glm::dot(corner, impostor.frame.forward); };
@@ -84,8 +84,8 @@ double drawn_texels(const Impostor& impostor, double nearest_m, double texel_ang
 ImpostorCost impostor_cost(const Impostor& impostor) {
   const double nearest_m = nearest_along_forward_m(impostor);
   const double texel_angle_rad = greatest_texel_angle_rad(impostor, nearest_m);
-  const double quads = impostor.technique == Technique::kLayered ? static_cast<double>(impostor.quads.size())
-                                                                 : std::ceil(0.5 * static_cast<double>(impostor.mesh.triangle_count()));
+  const double quads = !is_mesh(impostor.technique) ? static_cast<double>(impostor.quads.size())
+                                                    : std::ceil(0.5 * static_cast<double>(impostor.mesh.triangle_count()));
   return {quads, drawn_texels(impostor, nearest_m, texel_angle_rad), texel_angle_rad};
 }
 

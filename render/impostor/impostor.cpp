@@ -6,7 +6,7 @@
 namespace standin {
 namespace {
 
-constexpr std::array<std::string_view, kTechniqueCount> kNames = {"layered", "tdm"};
+constexpr std::array<std::string_view, kTechniqueCount> kNames = {"layered", "tdm", "planar", "lod-sprite"};
 
 void append_quad(const Impostor& impostor, const Quad& quad, TexturedMesh& mesh) {
   const auto first_vertex = static_cast<std::uint32_t>(mesh.vertices.size());
@@ -33,12 +33,16 @@ std::optional<Technique> technique_named(std::string_view name) {
   return std::nullopt;
 }
 
+std::span<const std::string_view> technique_names() {
+  return kNames;
+}
+
 std::string_view guarantee_name(const Impostor& impostor) {
-  return impostor.fuzzy || impostor.technique == Technique::kDepthMesh ? "none" : "nearest";
+  return impostor.fuzzy || is_mesh(impostor.technique) ? "none" : "nearest";
 }
 
 TexturedMesh textured_mesh(const Impostor& impostor) {
-  if (impostor.technique == Technique::kDepthMesh) return impostor.mesh;
+  if (is_mesh(impostor.technique)) return impostor.mesh;
   TexturedMesh mesh;
   for (const Quad& quad : impostor.quads) append_quad(impostor, quad, mesh);
   return mesh;

@@ -1,8 +1,8 @@
 // Impostors as they are drawn: textured triangles in the space of a reference viewpoint.
 //
 // An impostor stands for a set of objects, seen from anywhere in its view cell. Techniques differ in where its triangles lie: quads on
-// layers (thesis chapter 3), or a mesh through them (chapter 4). Whoever draws, packs, writes or measures takes textured_mesh(), which is
-// the same for all. Its frame has the reference viewpoint as origin and looks
+// layers (thesis chapter 3), a mesh through them (chapter 4), or a coarser mesh of the objects themselves (LOD-sprite). Whoever draws,
+// packs, writes or measures takes textured_mesh(), which is the same for all. Its frame has the reference viewpoint as origin and looks
 // along `forward` (= -axis of the shaft, or the box face's normal). A layer at distance A from the reference viewpoint is the rectangle { x
 // : dot(x - P, forward) = A }, whose texel (i, j) of `resolution` spans slopes [lo + i * step, lo + (i+1) * step] along right and [.. j ..]
 // along *down* (row 0 on top). Quads are rectangles of texels of one layer; opaque texels have alpha 255.
@@ -10,6 +10,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -72,11 +73,17 @@ struct TexturedMesh {
   [[nodiscard]] std::size_t triangle_count() const { return indices.size() / 3; }
 };
 
-enum class Technique : std::uint8_t { kLayered, kDepthMesh };
-inline constexpr std::size_t kTechniqueCount = 2;
-/// "layered", "tdm": as the command line and placement.json say.
+enum class Technique : std::uint8_t { kLayered, kDepthMesh, kPlanar, kLodSprite };
+inline constexpr std::size_t kTechniqueCount = 4;
+/// "layered", "tdm", "planar", "lod-sprite": as the command line and placement.json say.
 [[nodiscard]] std::string_view technique_name(Technique technique);
 [[nodiscard]] std::optional<Technique> technique_named(std::string_view name);
+/// All names, in the order of the enumeration.
+[[nodiscard]] std::span<const std::string_view> technique_names();
+/// Whether its triangles are a mesh of their own; else they are quads on layers.
+[[nodiscard]] constexpr bool is_mesh(Technique technique) {
+  return technique == Technique::kDepthMesh || technique == Technique::kLodSprite;
+}
 
 /// One baked impostor. `texels` holds the RGBA8 blocks of its quads or charts one after the other, rows from the top, straight alpha (0 or
 /// 255).
@@ -85,7 +92,7 @@ struct Impostor {
   ViewCell view_cell;
   ImpostorFrame frame;
   std::vector<Layer> layers;
-  std::vector<Quad> quads;  // of a layered impostor; else `mesh`
+  std::vector<Quad> quads;  // unless is_mesh(technique): then `mesh`
   std::vector<std::uint8_t> texels;
   TexturedMesh mesh{};
   Technique technique = Technique::kLayered;
@@ -96,8 +103,8 @@ struct Impostor {
   [[nodiscard]] bool empty() const { return quads.empty() && mesh.charts.empty(); }
 };
 
-/// "nearest": gapless and free of parallax error at nearest-texel sampling; "none": fuzzy or a depth mesh, gapless and near the truth
-/// perhaps (tests/bench/depth_mesh_table.md says how often).
+/// "nearest": gapless and free of parallax error at nearest-texel sampling; "none": fuzzy or a mesh, gapless and near the truth perhaps
+/// (tests/bench/depth_mesh_table.md says how often).
 [[nodiscard]] std::string_view guarantee_name(const Impostor& impostor);
 
 /// One chart for each quad (corners from the upper left, counter-clockwise as the viewer sees them), or the mesh itself.

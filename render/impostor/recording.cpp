@@ -4,7 +4,6 @@
 #include <cmath>
 #include <string>
 
-#include "render/base/error.h"
 #include "render/impostor/recorder.h"
 
 namespace standin {
@@ -70,14 +69,30 @@ ImpostorFrame padded(ImpostorFrame frame, double texels) {
 
 }  // namespace
 
+RequestPlanner::RequestPlanner(const Scene& scene, const BakeRequest& request) {
+  validate(scene, request);
+  bounds_ = bounds_of(scene, request.objects);
+  points_ = world_vertices(scene, request.objects);
+}
+
+ImpostorPlan RequestPlanner::plan(const ViewCell& cell, const Camera& camera, const BakeQuality& quality) const {
+  return plan_impostor(bounds_, points_, cell, camera, quality);
+}
+
+ImpostorPlan plan_request(const Scene& scene, const BakeRequest& request, const Camera& camera, const BakeQuality& quality) {
+  ImpostorPlan plan = RequestPlanner(scene, request).plan(request.view_cell, camera, quality);
+  if (!plan.possible) throw impossible(request, plan.why_not);
+  return plan;
+}
+
+Failure impossible(const BakeRequest& request, const std::string& why) {
+  return {ErrorWord::kImpostorImpossible, "impostor of " + std::to_string(request.objects.size()) + " objects from object " +
+                                              std::to_string(request.objects.front()) + " on: " + why};
+}
+
 Recording record_request(const Scene& scene, const TexturePyramids& textures, const BakeRequest& request, const Camera& camera,
                          const BakeQuality& quality, const WorkBudget& budget) {
-  validate(scene, request);
-  const ImpostorPlan plan =
-      plan_impostor(bounds_of(scene, request.objects), world_vertices(scene, request.objects), request.view_cell, camera, quality);
-  if (!plan.possible)
-    throw Failure(ErrorWord::kImpostorImpossible, "impostor of " + std::to_string(request.objects.size()) + " objects from object " +
-                                                      std::to_string(request.objects.front()) + " on: " + plan.why_not);
+  const ImpostorPlan plan = plan_request(scene, request, camera, quality);
   const ShiftBound shifts(plan.setup, plan.frame);
   const ImpostorFrame frame = quality.seal_rims ? padded(plan.frame, most_shift(shifts, plan.layers)) : plan.frame;
   return {frame, plan.layers,

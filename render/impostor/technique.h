@@ -1,7 +1,8 @@
 // All techniques behind one call: what placement and the command line need of an impostor is that it can be baked and what it promises.
 //
-// Each technique draws the same layers of texels (thesis 3.3) in its own way: as quads, or as a mesh that connects them (thesis 4). A
-// further one is a further row here; who draws, packs, writes or judges impostors sees textured triangles alone (impostor.h).
+// Layered impostors and depth meshes draw the same layers of texels (thesis 3.3), as quads or as a mesh that connects them (thesis 4); a
+// planar impostor is a single such layer, a LOD-sprite one image on a coarse mesh of the objects. A further one is a further row here; who
+// draws, packs, writes or judges impostors sees textured triangles alone (impostor.h).
 #pragma once
 
 #include "render/impostor/bake.h"

@@ -4,6 +4,8 @@
 #include <iostream>
 #include <map>
 
+#include "render/impostor/impostor.h"
+
 namespace standin {
 namespace {
 
@@ -163,9 +165,8 @@ void add_planning_commands(Grammar& grammar) {
       .add_option("--view-cell", bake.arguments().view_cell,
                   "shaft:DX,DY,DZ,APEX_DEG,MIN_DISTANCE (direction to the viewer) or box:X0,Y0,Z0,X1,Y1,Z1")
       ->required();
-  bake.app.add_option("--technique", bake.arguments().technique, "impostor technique")
-      ->check(CLI::IsMember({"layered", "tdm"}))
-      ->capture_default_str();
+  const std::vector<std::string> names(technique_names().begin(), technique_names().end());
+  bake.app.add_option("--technique", bake.arguments().technique, "impostor technique")->check(CLI::IsMember(names))->capture_default_str();
   bake.app.add_option("--views", bake.arguments().quality_views, "views inside the view cell that the image metrics look at; 0: none")
       ->check(CLI::Range(0, 100'000))
       ->capture_default_str();

@@ -86,7 +86,7 @@ void check_depths(const JudgedImpostor& impostor, const GlbImpostor& shown, cons
     for (std::size_t k = 0; k < 3; ++k) depths[k] = frame.depth(shown.origin + triangle.offsets[k]);
     const auto [low, high] = std::minmax({depths[0], depths[1], depths[2]});
     const bool flat = high - low <= kDepthTolerance * high;
-    if (low > 0.0 && (flat || impostor.technique != Technique::kLayered)) continue;
+    if (low > 0.0 && (flat || is_mesh(impostor.technique))) continue;
     throw Failure(ErrorWord::kFileBroken, "impostor GLB, node " + impostor.node + ": a triangle reaches from depth " + std::to_string(low) +
                                               " to " + std::to_string(high) +
                                               " m and is no part of a layer before the reference viewpoint");
@@ -146,7 +146,7 @@ class Judge {
 
   [[nodiscard]] ShownPoint seen_from_reference(const TriangleCaster::Shown& hit) const {
     ShownPoint shown{hit.point, hit.distance_m, frame_.depth(hit.point), frame_.slope(hit.point), Vec2(0.0), Vec2(0.0)};
-    if (impostor_.technique == Technique::kLayered) {
+    if (!is_mesh(impostor_.technique)) {
       const auto [along_row, down_column] = caster_.texel_steps(hit.triangle);
       shown.step_right = Vec2(glm::dot(along_row, frame_.right), glm::dot(along_row, frame_.up)) / shown.depth_m;
       shown.step_up = -Vec2(glm::dot(down_column, frame_.right), glm::dot(down_column, frame_.up)) / shown.depth_m;
@@ -202,8 +202,8 @@ class Judge {
     const double length = glm::length(way);
     const double from_m = range.near_m * length * (1.0 - kDistanceTolerance);
     const double to_m = range.far_m * length * (1.0 + kDistanceTolerance);
-    const auto distance = impostor_.technique == Technique::kLayered ? first_distance(way / length, from_m, to_m)
-                                                                     : nearest_distance(way / length, from_m, to_m, depth_m * length);
+    const auto distance = !is_mesh(impostor_.technique) ? first_distance(way / length, from_m, to_m)
+                                                        : nearest_distance(way / length, from_m, to_m, depth_m * length);
     if (!distance) return std::nullopt;
     return std::clamp(*distance / length, range.near_m, range.far_m);
   }
@@ -223,7 +223,7 @@ class Judge {
   // The GLB does not say which layer a quad belongs to: the one nearest to it.
   [[nodiscard]] Layer depth_range(double depth_m) const {
     const auto& layers = impostor_.layers;
-    if (impostor_.technique == Technique::kLayered) {
+    if (!is_mesh(impostor_.technique)) {
       const auto after = std::ranges::lower_bound(layers, depth_m, {}, &Layer::distance_m);
       if (after == layers.begin()) return *after;
       const auto before = after - 1;

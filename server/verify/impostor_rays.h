@@ -7,7 +7,7 @@
 // ray through Q itself passes its surface by up to one texel: then the surface found within one texel tells the depth of X, which stays on
 // the ray (nearest-texel sampling shows it there). The promise is no gap pixel and a ratio of at most 1. Bloat: see silhouette.h.
 //
-// Layered impostors: a quad lies on its layer, whose slab and depth range are the layer's own. Depth meshes run through the layers: the
+// Layered impostors: a quad lies on its layer, whose slab and depth range are the layer's own. Meshes run through the layers: the
 // depth range, and so the slab, is that of the layer whose range holds the depth of Q, extended by that of one neighbouring layer on either
 // side; of several points X in it the one nearest in depth to Q counts (a layer records the first one in its slab).
 #pragma once

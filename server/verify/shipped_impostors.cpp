@@ -141,7 +141,7 @@ void ImpostorReader::read_quads(Impostor& impostor, std::vector<AtlasSlot>& slot
 }
 
 void ImpostorReader::read(Impostor& impostor, std::vector<AtlasSlot>& slots) const {
-  const bool layered = impostor.technique == Technique::kLayered;
+  const bool layered = !is_mesh(impostor.technique);
   if ((shipped_.triangles.size() + (layered ? 0 : 1)) / kTrianglesPerQuad != placed_.quads ||
       (layered && shipped_.triangles.size() % kTrianglesPerQuad != 0))
     broken(shipped_.node, "has " + std::to_string(shipped_.triangles.size()) + " triangles; the placement says " +

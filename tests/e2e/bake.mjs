@@ -53,3 +53,23 @@ test("a depth mesh is smaller, is read back from its file, and promises nothing"
   assert.ok(mesh.texture_bytes < layered.texture_bytes, `${mesh.texture_bytes} bytes of ${layered.texture_bytes}`);
   assert.ok(mesh.image.judged_pixels > 1000 && mesh.image.gap_pixels < 1e-3 * mesh.image.judged_pixels);
 });
+
+test("a planar impostor is the one layer that is enough from afar, and is refused where it is not", () => {
+  const far = ["--views", "8", "--view-cell", "shaft:1,0.2,0,2,3000"];
+  const layered = bake("far", ...far).metrics;
+  const planar = bake("planar", "--technique", "planar", ...far).metrics;
+  assert.deepEqual([planar.technique, planar.guarantee, planar.layers], ["planar", "nearest", 1]);
+  assert.deepEqual(planar.image, layered.image);
+  assert.equal(planar.texture_bytes, layered.texture_bytes);
+  const near = ["--view-cell", "shaft:1,0.2,0,30,200", "--technique", "planar", "-o", join(folder, "refused")];
+  const { err } = expectExit(2, "bake", city, "--objects", "2", "--quiet", ...near);
+  assert.match(err, /needs \d+ layers; a planar impostor has one/);
+});
+
+test("a LOD-sprite is a coarse mesh, read back from its file, that promises nothing", () => {
+  const near = ["--views", "8", "--view-cell", "shaft:1,0.2,0,30,200"];
+  const sprite = bake("sprite", "--technique", "lod-sprite", ...near).metrics;
+  assert.deepEqual([sprite.technique, sprite.guarantee, sprite.quads], ["lod-sprite", "none", 0]);
+  assert.ok(sprite.triangles > 2 && sprite.texture_bytes > 0);
+  assert.ok(sprite.image.judged_pixels > 1000 && sprite.image.gap_pixels < 1e-2 * sprite.image.judged_pixels, `${sprite.image.gap_pixels} gaps`);
+});
