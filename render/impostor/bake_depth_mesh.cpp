@@ -2,6 +2,7 @@
 
 #include <chrono>
 
+#include "render/impostor/border_margin.h"
 #include "render/impostor/depth_mesh_texture.h"
 #include "render/impostor/recorder.h"
 #include "render/impostor/recording.h"
@@ -47,7 +48,9 @@ DepthMeshImpostor bake_depth_mesh(const Scene& scene, const TexturePyramids& tex
     const auto surface_depth = [&](std::uint32_t x, std::uint32_t y, std::uint32_t layer) {
       return depths.of_metres(depth_m(recording.images[layer].get(x, y), recording.layers[layer]));
     };
-    return simplify(initial, lattice, depths, surface_depth, mesh_quality.enlargement, budget);
+    SimplifiedMesh mesh = simplify(initial, lattice, depths, surface_depth, mesh_quality.enlargement, budget);
+    widen_borders(mesh, mesh_quality.margin);
+    return mesh;
   });
   Impostor impostor{request.objects, request.view_cell, recording.frame, recording.layers, {}, {}, {}, Technique::kDepthMesh};
   impostor.fuzzy = recording.fuzzy;

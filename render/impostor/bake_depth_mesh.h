@@ -10,8 +10,9 @@
 namespace standin {
 
 struct DepthMeshQuality {
-  double enlargement = 1.0;  // of voxels in the simplification: 1 strict, up to 2 for fewer triangles
+  double enlargement = 1.4;  // of voxels in the simplification, away from borders: 1 strict, up to 2 for fewer triangles
   int ring = 2;              // voxels kept beyond the borders of what can be seen
+  double margin = 0.5;       // texels that borders are moved outwards after it
   double texels_per_voxel = 1.0;
 };
 

@@ -6,12 +6,14 @@
 #include <numeric>
 #include <unordered_set>
 
+#include "render/impostor/border_margin.h"
 #include "render/impostor/flat_reduction.h"
 
 namespace standin {
 namespace {
 
 constexpr std::uint32_t kNone = 0xFFFFFFFF;
+constexpr std::size_t kMostToTurn = 16;  // triangles of a chart that is turned; larger ones fill their blocks well enough
 
 /// The side of the lattice a chart is seen from: axis 0, 1, 2 (x, y, layer) and the direction along it.
 struct Facing {
@@ -42,9 +44,9 @@ bool faces(const std::array<LatticeVertex, 3>& t, const LatticeNormal& n, const 
   return along >= 0 && high - low <= 2;
 }
 
-Vec2 chart_coordinates(const LatticeVertex& v, int axis) {
-  const Vec2 texel = texel_coordinates(v);
-  return {axis == 0 ? 0.5 * v.depth : texel.x, axis == 1 ? 0.5 * v.depth : texel.y};
+Vec2 chart_coordinates(const SimplifiedMesh& mesh, std::uint32_t v, int axis) {
+  const Vec3 place = shifted_place(mesh, v);
+  return {axis == 0 ? 0.5 * place.z : place.x, axis == 1 ? 0.5 * place.z : place.y};
 }
 
 /// Neighbours of each triangle over its edges, three lists one after the other in order of ids.
@@ -96,6 +98,14 @@ struct Rect {
 Rect bounds_of(const FlatTriangle& t) {
   return {glm::min(t[0], glm::min(t[1], t[2])), glm::max(t[0], glm::max(t[1], t[2]))};
 }
+
+/// A rotation in the plane of a chart.
+struct Turn {
+  double cosine = 1.0, sine = 0.0;
+
+  [[nodiscard]] bool identity() const { return sine == 0.0 && cosine == 1.0; }
+  [[nodiscard]] Vec2 operator()(const Vec2& p) const { return {cosine * p.x - sine * p.y, sine * p.x + cosine * p.y}; }
+};
 
 /// Grows charts from the largest triangles. The next triangle is the neighbour whose addition saves most against a block of its own; growth
 /// ends where none saves anything.
@@ -150,7 +160,7 @@ class Charting {
 
   [[nodiscard]] FlatTriangle flat(std::uint32_t t) const {
     FlatTriangle result;
-    for (std::size_t i = 0; i < 3; ++i) result[i] = scale_ * chart_coordinates(mesh_.vertices[mesh_.triangles[t][i]], facing_.axis);
+    for (std::size_t i = 0; i < 3; ++i) result[i] = scale_ * chart_coordinates(mesh_, mesh_.triangles[t][i], facing_.axis);
     return result;
   }
 
@@ -184,7 +194,10 @@ class Charting {
   static std::uint64_t key(int x, int y) { return static_cast<std::uint64_t>(y) << 32 | static_cast<std::uint32_t>(x); }
 
   [[nodiscard]] ChartDraft draft() {
-    const Vec2 origin = glm::floor(bounds_.low), size = bounds_.texels();
+    const Turn turn = best_turn();
+    const Rect bounds = bounds_turned(turn);
+    const Vec2 origin = turn.identity() ? glm::floor(bounds.low) : bounds.low;
+    const Vec2 size = turn.identity() ? bounds.texels() : glm::max(glm::ceil(bounds.high - bounds.low - 1e-9), Vec2(1.0));
     ChartDraft chart{static_cast<std::uint32_t>(size.x), static_cast<std::uint32_t>(size.y), {}, {}, {}};
     for (const std::uint32_t t : members_) {
       TriangleCorners corners = mesh_.triangles[t];
@@ -192,7 +205,7 @@ class Charting {
         if (local_[corner] == kNone) {
           local_[corner] = static_cast<std::uint32_t>(chart.vertices.size());
           chart.vertices.push_back(corner);
-          chart.texels.push_back(scale_ * chart_coordinates(mesh_.vertices[corner], facing_.axis) - origin);
+          chart.texels.push_back(turn(scale_ * chart_coordinates(mesh_, corner, facing_.axis)) - origin);
         }
         corner = local_[corner];
       }
@@ -200,6 +213,52 @@ class Charting {
     }
     for (const std::uint32_t v : chart.vertices) local_[v] = kNone;
     return chart;
+  }
+
+  [[nodiscard]] FlatTriangle flat(std::uint32_t t, const Turn& turn) const {
+    FlatTriangle result = flat(t);
+    for (Vec2& corner : result) corner = turn(corner);
+    return result;
+  }
+
+  [[nodiscard]] Rect bounds_turned(const Turn& turn) const {
+    Rect bounds;
+    for (const std::uint32_t t : members_) bounds.extend(bounds_of(flat(t, turn)));
+    return bounds;
+  }
+
+  /// An edge of the chart along the block's side often wastes least; of equals the first, which is the lattice's own direction.
+  [[nodiscard]] Turn best_turn() const {
+    Turn best;
+    if (members_.size() > kMostToTurn) return best;
+    double least = bounds_.cost();
+    for (const std::uint32_t t : members_) {
+      const FlatTriangle corners = flat(t);
+      for (std::size_t i = 0; i < 3; ++i) {
+        const Vec2 edge = corners[(i + 1) % 3] - corners[i];
+        const double length = glm::length(edge);
+        if (length < 1e-9) continue;
+        const Turn turn{edge.x / length, -edge.y / length};
+        const Rect bounds = bounds_turned(turn);
+        const Vec2 size = glm::ceil(bounds.high - bounds.low - 1e-9) + 2.0;
+        if (size.x * size.y >= least || std::max(size.x, size.y) > max_side_ || !lies_open(turn, bounds.low)) continue;
+        least = size.x * size.y;
+        best = turn;
+      }
+    }
+    return best;
+  }
+
+  /// Whether no texel centre is in two triangles.
+  [[nodiscard]] bool lies_open(const Turn& turn, const Vec2& origin) const {
+    std::unordered_set<std::uint64_t> taken;
+    bool open = true;
+    for (const std::uint32_t t : members_) {
+      FlatTriangle corners = flat(t, turn);
+      for (Vec2& corner : corners) corner -= origin;
+      for_each_centre(corners, [&](int x, int y) { open = open && taken.insert(key(x, y)).second; });
+    }
+    return open;
   }
 
   const SimplifiedMesh& mesh_;

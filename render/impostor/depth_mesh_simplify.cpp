@@ -212,7 +212,7 @@ class Simplifier {
     for (std::size_t i = first; i < end; ++i) owners_.collect(ids[i], voxels_);
     return std::all_of(voxels_.begin(), voxels_.end(), [&](std::uint32_t id) {
       for (std::size_t i = triangles.size(); i-- > 0;)
-        if ((i < first || i >= end) && complex_.alive(ids[i]) && cover_.meets(triangles[i], owners_.voxel(id))) {
+        if ((i < first || i >= end) && complex_.alive(ids[i]) && exact_.meets(triangles[i], owners_.voxel(id))) {
           new_owners_.push_back(ids[i]);
           return true;
         }
@@ -226,12 +226,15 @@ class Simplifier {
     if (find_neighbour(of_removed_, kept) == nullptr) return false;
     complex_.neighbours_of(kept, of_kept_);
     complex_.triangles_of(removed, star_);
-    if (!complex_.may_contract(of_removed_, of_kept_, kept) || !prepare_triangles(removed, kept) || !new_edges_covered(kept) ||
+    if (!complex_.may_contract(of_removed_, of_kept_, removed, kept) || !prepare_triangles(removed, kept) || !new_edges_covered(kept) ||
         !find_new_owners())
       return false;
     complex_.contract(removed, kept, star_);
     for (const std::uint32_t t : star_) owners_.clear(t);
     for (std::size_t i = 0; i < voxels_.size(); ++i) owners_.give(voxels_[i], new_owners_[i]);
+    const std::uint32_t twins = complex_.vertex_count();
+    complex_.split_fans(kept);
+    for (std::uint32_t v = twins; v < complex_.vertex_count(); ++v) push_edges(v);
     push_edges(kept);
     const std::vector<Neighbour> changed = of_removed_;
     for (const Neighbour& n : changed) push_edges(n.vertex);
@@ -270,11 +273,13 @@ class Simplifier {
     voxels_.clear();
     new_owners_.clear();
     for (const std::uint32_t t : star_) owners_.collect(t, voxels_);
+    const bool at_border = std::any_of(of_removed_.begin(), of_removed_.end(), [](const Neighbour& n) { return n.triangles == 1; });
+    const VoxelCover& cover = at_border ? exact_ : cover_;
     std::size_t last = 0;
     for (const std::uint32_t id : voxels_) {
       const Voxel& voxel = owners_.voxel(id);
       std::size_t tried = 0;
-      while (tried < new_ids_.size() && !cover_.meets(new_triangles_[(last + tried) % new_ids_.size()], voxel)) ++tried;
+      while (tried < new_ids_.size() && !cover.meets(new_triangles_[(last + tried) % new_ids_.size()], voxel)) ++tried;
       if (tried == new_ids_.size()) return false;
       last = (last + tried) % new_ids_.size();
       new_owners_.push_back(new_ids_[last]);
@@ -283,7 +288,7 @@ class Simplifier {
   }
 
   TriangleComplex complex_;
-  VoxelCover cover_;
+  VoxelCover cover_;  // enlarged
   VoxelCover exact_;
   const LatticeDepths& depths_;
   const SurfaceDepth& surface_depth_;

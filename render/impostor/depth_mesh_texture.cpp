@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "render/impostor/border_margin.h"
 #include "render/impostor/chart_texels.h"
 #include "render/impostor/depth_mesh_charting.h"
 #include "render/impostor/slab_piece.h"
@@ -62,17 +63,28 @@ class VoxelColours {
   std::vector<Step> steps_;
 };
 
+/// Between layers' planes and borders, inverse distance is even; beyond the first and the last it goes on as it ends.
+double distance_at(std::span<const Layer> layers, double half_layers) {
+  const auto inverse = [&](int h) {
+    const Layer& layer = layers[static_cast<std::size_t>(h + 1) / 2];
+    return 1.0 / (h % 2 == 0 ? layer.distance_m : layer.near_m);
+  };
+  const int last = 2 * static_cast<int>(layers.size()) - 2;
+  if (last == 0) return layers[0].distance_m;
+  const int h = std::clamp(static_cast<int>(std::floor(half_layers)), 0, last - 1);
+  const double share = half_layers - h;
+  return 1.0 / (share == 0.0 ? inverse(h) : (1.0 - share) * inverse(h) + share * inverse(h + 1));
+}
+
 }  // namespace
 
 TexturedMesh textured(const SimplifiedMesh& mesh, std::span<const LayerImage> images, const VoxelLattice& lattice,
                       const ImpostorFrame& frame, std::span<const Layer> layers, const TextureOptions& options,
                       std::vector<std::uint8_t>& texels) {
   std::vector<Vec3> offsets;
-  for (const LatticeVertex& v : mesh.vertices) {
-    const Vec2 texel = texel_coordinates(v);
-    const Layer& layer = layers[static_cast<std::size_t>(v.depth + 1) / 2];
-    const double distance_m = v.depth % 2 == 0 ? layer.distance_m : layer.near_m;
-    offsets.push_back(layer_point(frame, distance_m, texel.x, texel.y) - frame.reference_viewpoint);
+  for (std::uint32_t v = 0; v < mesh.vertices.size(); ++v) {
+    const Vec3 place = shifted_place(mesh, v);
+    offsets.push_back(layer_point(frame, distance_at(layers, place.z), place.x, place.y) - frame.reference_viewpoint);
   }
   const VoxelColours colours(images, lattice, frame, layers);
   TexturedMesh result;

@@ -61,7 +61,7 @@ class FlatReduction {
     for (const auto& n : neighbours_) {
       if ((slope_[v] != 0 && slope_[n.vertex] == 0) || !keeps_surface(v, n.vertex)) continue;
       complex_.neighbours_of(n.vertex, others_);
-      if (!complex_.may_contract(neighbours_, others_, n.vertex)) continue;
+      if (!complex_.may_contract(neighbours_, others_, v, n.vertex)) continue;
       complex_.contract(v, n.vertex, star_);
       return true;
     }

@@ -93,21 +93,33 @@ std::int64_t TriangleComplex::length2(std::uint32_t a, std::uint32_t b) const {
   return dx * dx + dy * dy + dz * dz;
 }
 
-bool TriangleComplex::may_contract(const std::vector<Neighbour>& of_removed, const std::vector<Neighbour>& of_kept,
+bool TriangleComplex::may_contract(const std::vector<Neighbour>& of_removed, const std::vector<Neighbour>& of_kept, std::uint32_t removed,
                                    std::uint32_t kept) const {
   const Neighbour* edge = find_neighbour(of_removed, kept);
   int borders = 0;
   for (const Neighbour& n : of_removed) borders += n.triangles != 2;
   if (borders != 0 && (borders != 2 || edge->triangles == 2)) return false;
-  std::uint32_t common = 0;
+  std::uint32_t tips = 0;
   for (const Neighbour& n : of_removed) {
     const Neighbour* other = n.vertex == kept ? nullptr : find_neighbour(of_kept, n.vertex);
     if (other == nullptr) continue;
-    ++common;
+    if (!is_triangle(removed, kept, n.vertex)) {
+      if (n.triangles != 1 || other->triangles != 1 || edge->triangles != 1) return false;
+      continue;
+    }
+    ++tips;
     const std::uint32_t merged = n.triangles + other->triangles - 2;
     if (merged == 0 || merged > std::max(n.triangles, other->triangles)) return false;
   }
-  return common == edge->triangles;
+  return tips == edge->triangles;
+}
+
+bool TriangleComplex::is_triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c) const {
+  for (std::uint32_t corner = first_corner_[a]; corner != kNone; corner = next_corner_[corner]) {
+    const TriangleCorners& corners = corners_[corner / 3];
+    if (alive(corner / 3) && has_corner(corners, b) && has_corner(corners, c)) return true;
+  }
+  return false;
 }
 
 void TriangleComplex::contract(std::uint32_t removed, std::uint32_t kept, const std::vector<std::uint32_t>& star) {

@@ -34,18 +34,21 @@ class TriangleComplex {
   [[nodiscard]] std::int64_t length2(std::uint32_t a, std::uint32_t b) const;
 
   /// Whether taking `removed` into `kept` leaves border a border and manifold edges manifold: an end of a border edge goes along the border
-  /// only, and where it goes straight on in two directions; the only common neighbours are the tips of the triangles that vanish.
-  [[nodiscard]] bool may_contract(const std::vector<Neighbour>& of_removed, const std::vector<Neighbour>& of_kept,
+  /// only, and where it goes straight on in two directions; the only common neighbours are the tips of the triangles that vanish, and the
+  /// third corner of a hole that thereby closes.
+  [[nodiscard]] bool may_contract(const std::vector<Neighbour>& of_removed, const std::vector<Neighbour>& of_kept, std::uint32_t removed,
                                   std::uint32_t kept) const;
   /// Triangles of the edge vanish, the others of `removed` (its star) take `kept` as corner.
   void contract(std::uint32_t removed, std::uint32_t kept, const std::vector<std::uint32_t>& star);
+  /// Gives each set of triangles at v that hang together over edges a vertex of its own; new ones are the last.
+  void split_fans(std::uint32_t v);
   void remove(std::uint32_t triangle) { corners_[triangle][0] = kNone; }
 
  private:
   static constexpr std::uint32_t kNone = 0xFFFFFFFF;
 
   void link(std::uint32_t corner, std::uint32_t vertex);
-  void split_fans(std::uint32_t v);
+  [[nodiscard]] bool is_triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c) const;
 
   std::vector<LatticeVertex> positions_;
   std::vector<TriangleCorners> corners_;

@@ -72,7 +72,7 @@ bool VoxelCover::meets(const CoverTriangle& triangle, const Voxel& voxel) const 
   return overlap(triangle, {Vec3(voxel.x + 0.5, voxel.y + 0.5, voxel.depth), Vec3(half_side_, half_side_, half_depth_[voxel.layer])});
 }
 
-/// The largest share of the way at which the segment leaves an enlarged opaque voxel that holds its point at `share`; -1 if there is none.
+/// The largest share of the way at which the segment leaves an enlarged free voxel that holds its point at `share`; -1 if there is none.
 double VoxelCover::farthest_exit(const Vec3& from, const Vec3& to, double share) const {
   const Vec3 way = to - from, p = from + share * way;
   const auto exit = [&](double low, double high, int axis) {
@@ -86,11 +86,11 @@ double VoxelCover::farthest_exit(const Vec3& from, const Vec3& to, double share)
   double best = -1.0;
   const auto end = std::partition_point(depth_.begin(), depth_.end(), [&](const Span& span) { return span.low <= p.z + kSlack; });
   for (auto k = end; k-- != depth_.begin() && k->high >= p.z - kSlack;) {
-    const BitImage& opaque = lattice_.layers[static_cast<std::size_t>(k - depth_.begin())].opaque;
+    const BitImage& free = lattice_.layers[static_cast<std::size_t>(k - depth_.begin())].free;
     const double exit_z = exit(k->low, k->high, 2);
     for (int y = first(p.y); exit_z > best && y <= last(p.y, lattice_.height); ++y)
       for (int x = first(p.x); x <= last(p.x, lattice_.width); ++x)
-        if (opaque.test(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y)))
+        if (free.test(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y)))
           best = std::max(best, std::min({exit_z, exit(x + 0.5 - half_side_, x + 0.5 + half_side_, 0),
                                           exit(y + 0.5 - half_side_, y + 0.5 + half_side_, 1)}));
   }

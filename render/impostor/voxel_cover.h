@@ -1,5 +1,5 @@
 // How far a simplified mesh may stray: every voxel it stands for, enlarged by a factor, must still meet it, and its edges must stay within
-// enlarged opaque voxels (thesis 4.5, math.md 7.4).
+// enlarged voxels that are opaque, or hidden beside opaque ones (thesis 4.5, math.md 7.4).
 //
 // We differ from the thesis: a voxel's box is not its layer's depth range but as far about the surface that was recorded in it. So the
 // layer's range bounds how far the mesh may lie from the original, not twice that.
@@ -37,7 +37,7 @@ class VoxelCover {
   VoxelCover(const VoxelLattice& lattice, const LatticeDepths& depths, double enlargement);
 
   [[nodiscard]] bool meets(const CoverTriangle& triangle, const Voxel& voxel) const;
-  /// Whether every point of the segment lies in an enlarged opaque voxel.
+  /// Whether every point of the segment lies in an enlarged free voxel.
   [[nodiscard]] bool covers(const Vec3& from, const Vec3& to) const;
 
  private:

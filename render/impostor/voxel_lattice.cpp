@@ -70,18 +70,23 @@ VoxelLattice voxel_lattice(std::vector<BitImage> opaque, int ring) {
     wanted -= culling.hidden_in_next(mask);
     solid |= mask;
     inside.push_back(dilated(wanted));
-    lattice.layers.push_back({std::move(mask), std::move(solid), std::move(wanted), BitImage(lattice.width, lattice.height)});
+    const BitImage none(lattice.width, lattice.height);
+    lattice.layers.push_back({std::move(mask), std::move(solid), std::move(wanted), none, none});
   }
   find_bridges(lattice);
   for (std::size_t k = 0; k + 1 < lattice.layers.size(); ++k) inside[k] |= lattice.layers[k + 1].joined;
   for (int i = 0; i < ring; ++i) grow_wanted(lattice, inside);
-  for (VoxelLayer& layer : lattice.layers) layer.joined |= layer.wanted;
+  for (VoxelLayer& layer : lattice.layers) {
+    layer.joined |= layer.wanted;
+    layer.free = dilated(layer.opaque);
+    layer.free &= layer.solid;
+  }
   return lattice;
 }
 
 VoxelLattice unculled_lattice(std::vector<BitImage> opaque) {
   VoxelLattice lattice = sized_like(opaque);
-  for (const BitImage& mask : opaque) lattice.layers.push_back({mask, mask, mask, mask});
+  for (const BitImage& mask : opaque) lattice.layers.push_back({mask, mask, mask, mask, mask});
   return lattice;
 }
 

@@ -20,6 +20,7 @@ struct VoxelLayer {
   BitImage solid;   // opaque, or hidden from the whole view cell by nearer layers
   BitImage wanted;  // opaque and to be shown
   BitImage joined;  // these, and hidden ones through which what is to be shown hangs together
+  BitImage free;    // opaque, or hidden right beside opaque ones: where a mesh may lie
 };
 
 /// Layers near to far, all of one size; at least one.

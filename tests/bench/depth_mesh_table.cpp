@@ -1,6 +1,6 @@
 // Textured depth meshes against layered impostors, after thesis table 4.1 (depth_mesh_table.md holds results).
 //
-//     depth_mesh_table SCENE [--enlargement 1.5] [--ring 2] [--alpha 1] [--scale 1] [--distances 90,110,...]
+//     depth_mesh_table SCENE [--enlargement 1.4] [--ring 2] [--margin 0.5] [--alpha 1] [--scale 1] [--distances 90,110,...]
 //
 // The whole scene as one impostor, for a cubic view cell of 100 m before it in +z, at several distances.
 #include <cstdio>
@@ -38,6 +38,7 @@ Arguments parse(int argc, char** argv) {
     if (i + 1 == argc) throw Failure(ErrorWord::kBadUsage, flag + " needs a value");
     const std::string value = argv[++i];
     if (flag == "--enlargement") arguments.mesh.enlargement = std::stod(value);
+    if (flag == "--margin") arguments.mesh.margin = std::stod(value);
     if (flag == "--ring") arguments.mesh.ring = std::stoi(value);
     if (flag == "--alpha") arguments.quality.alpha_scale = std::stod(value);
     if (flag == "--scale") arguments.scale = std::stod(value);

@@ -4,6 +4,7 @@
 #include <map>
 
 #include "render/impostor/bake_depth_mesh.h"
+#include "render/impostor/border_margin.h"
 #include "render/impostor/depth_mesh_simplify.h"
 #include "render/impostor/texture_pyramid.h"
 #include "tests/render/impostor/small_scene.h"
@@ -191,6 +192,40 @@ ViewCell shaft_towards_z(double tan_half, double min_distance) {
   return shaft;
 }
 
+// Holes may close in the simplification, but not where one sees through them.
+TEST(DepthMesh, AnOpenHoleStaysOpen) {
+  BitImage holed(20, 20);
+  for (std::uint32_t y = 0; y < 20; ++y)
+    for (std::uint32_t x = 0; x < 20; ++x)
+      if (x < 8 || x > 10 || y < 8 || y > 10) holed.set(x, y);
+  const VoxelLattice lattice = voxel_lattice({holed}, 2);
+  const SimplifiedMesh mesh = simplified(initial_depth_mesh(lattice, Sheets::kSeen), lattice, 1.4);
+  EXPECT_GE(mesh.triangles.size(), 6U);
+  const Vec2 middle(9.5);
+  for (const TriangleCorners& t : mesh.triangles) {
+    int left = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Vec2 from = texel_coordinates(mesh.vertices[t[i]]), to = texel_coordinates(mesh.vertices[t[(i + 1) % 3]]);
+      left += (to.x - from.x) * (middle.y - from.y) > (to.y - from.y) * (middle.x - from.x);
+    }
+    EXPECT_TRUE(left != 0 && left != 3);
+  }
+}
+
+TEST(DepthMesh, BordersAreWidenedInTheirPlane) {
+  BitImage full(10, 8);
+  for (std::uint32_t y = 0; y < 8; ++y)
+    for (std::uint32_t x = 0; x < 10; ++x) full.set(x, y);
+  const VoxelLattice lattice = voxel_lattice({full}, 2);
+  SimplifiedMesh mesh = simplified(initial_depth_mesh(lattice, Sheets::kSeen), lattice, 1.0);
+  widen_borders(mesh, 0.25);
+  Vec3 low(1e9), high(-1e9);
+  for (std::uint32_t v = 0; v < mesh.vertices.size(); ++v)
+    low = glm::min(low, shifted_place(mesh, v)), high = glm::max(high, shifted_place(mesh, v));
+  EXPECT_LT(glm::length(low - Vec3(0.0)), 1e-9);
+  EXPECT_LT(glm::length(high - Vec3(10.0, 8.0, 0.0)), 1e-9);
+}
+
 DepthMeshImpostor baked(const Scene& scene, const ViewCell& cell, const DepthMeshQuality& quality = {}) {
   std::vector<std::uint32_t> objects;
   for (std::uint32_t i = 0; i < scene.objects.size(); ++i) objects.push_back(i);
@@ -246,7 +281,7 @@ TEST(DepthMesh, OneTexelAndTheSameBytesTwice) {
   speck.add_object(test::rectangle({0.3, 0.2, 0}, {0.01, 0, 0}, {0, 0.01, 0}));
   const DepthMeshImpostor one = baked(speck.scene, shaft_towards_z(0.1, 40.0));
   EXPECT_GE(one.summary.triangles, 1U);
-  EXPECT_EQ(one.texels.size(), 4U);
+  EXPECT_LE(one.texels.size(), 16U);  // one and a half texels a side, with the margin
 
   Rng rng(3);
   test::SmallScene scene;
