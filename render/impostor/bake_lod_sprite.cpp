@@ -23,7 +23,8 @@ Layer one_layer(const std::vector<Layer>& layers) {
 /// the image in all three directions, at any depth.
 SimplifiedMesh on_lattice(const SpriteMesh& mesh, const ImpostorFrame& frame, double near_m) {
   const auto half_steps = [](double texels) { return static_cast<std::int32_t>(std::lround(2.0 * texels)); };
-  SimplifiedMesh result{{}, mesh.triangles};
+  SimplifiedMesh result;
+  result.triangles = mesh.triangles;
   for (const Vec3& offset : mesh.vertices) {
     const double depth = glm::dot(offset, frame.forward);
     const Vec2 texel = texel_from_slope(frame, Vec2(glm::dot(offset, frame.right), glm::dot(offset, frame.up)) / depth) - 0.25;
