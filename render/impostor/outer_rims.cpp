@@ -2,14 +2,15 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <utility>
 
 #include "render/impostor/bit_image.h"
 
 namespace standin {
 namespace {
 
-constexpr int kDiscTexels = 3;     // a disc of 2 pixels and the rim's own texel
-constexpr int kWidestWindow = 16;  // beyond, a surface anywhere counts
+constexpr int kDiscTexels = 12;    // a disc of 2 pixels, seen from up to five times the distance, and the rim's own texel
+constexpr int kWidestWindow = 32;  // beyond, a surface anywhere counts
 
 struct Texel {
   int x = 0, y = 0;
@@ -64,11 +65,18 @@ class OuterRims {
     return false;
   }
 
-  [[nodiscard]] bool in_window(const BitImage& surface, const Texel& rim, const Texel& outward, int window) const {
-    for (int dy = -window; dy <= window; ++dy)
-      for (int dx = -window; dx <= window; ++dx)
-        if (dx * outward.x + dy * outward.y > 0 && holds(surface, rim.x + dx, rim.y + dy)) return true;
-    return false;
+  /// Anything in the window to the outer side along x, or along y: a little more than the half plane.
+  [[nodiscard]] static bool in_window(const BitImage& surface, const Texel& rim, const Texel& outward, int window) {
+    const auto along = [&](int from, int towards) {
+      return towards > 0 ? std::pair{from + 1, from + window + 1} : std::pair{from - window, from};
+    };
+    const auto any = [&](std::pair<int, int> x, std::pair<int, int> y) {
+      const auto inside = [](int at, std::uint32_t size) { return static_cast<std::uint32_t>(std::clamp(at, 0, static_cast<int>(size))); };
+      return surface.any(inside(x.first, surface.width()), inside(y.first, surface.height()), inside(x.second, surface.width()),
+                         inside(y.second, surface.height()));
+    };
+    const std::pair whole_x{rim.x - window, rim.x + window + 1}, whole_y{rim.y - window, rim.y + window + 1};
+    return (outward.x != 0 && any(along(rim.x, outward.x), whole_y)) || (outward.y != 0 && any(whole_x, along(rim.y, outward.y)));
   }
 
   std::vector<LayerImage>& images_;

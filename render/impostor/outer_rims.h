@@ -2,8 +2,9 @@
 //
 // A gap shows where what lies around it is covered. Beyond a rim that has no surface on its outer side, from anywhere in the view cell, a
 // pixel's disc (2 pixels) is not covered, so nothing can be missing there, and the texels drawn for rays that pass beside the surface would
-// only fatten the silhouette. Two layers shift by at most a texel for each layer between them and the next; so a surface that may come to
-// lie beyond a rim has a texel on its outer side within 3 texels and one for each layer apart.
+// only fatten the silhouette. Two layers shift by at most a texel for each layer between them and the next, and a pixel is no more than
+// kDiscTexels wide in all but distant views; so a surface that may come to lie beyond a rim has a texel on its outer side within so many
+// texels and one for each layer apart. From farther away a disc spans more: what is left open there is a slit of a small part of a pixel.
 #pragma once
 
 #include <vector>

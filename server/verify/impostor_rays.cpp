@@ -136,7 +136,7 @@ class Judge {
         const auto shown = hit ? std::optional(seen_from_reference(*hit)) : std::nullopt;
         before.set(x - window.x0, y - window.y0, original.covers(x, y));
         after.set(x - window.x0, y - window.y0, shown.has_value());
-        judge_gap(original.farthest_in_disc(x, y), shown, result);
+        judge_gap(original.farthest_in_disc(x, y), ray, shown, result);
         if (shown) judge_parallax(ray.origin, *shown, result);
       }
     result.excess_pixels = excess_pixels(before, after);
@@ -157,7 +157,7 @@ class Judge {
     return shown;
   }
 
-  void judge_gap(double farthest_original_m, const std::optional<ShownPoint>& shown, ImpostorJudgement& result) const {
+  void judge_gap(double farthest_original_m, const PixelRay& ray, const std::optional<ShownPoint>& shown, ImpostorJudgement& result) const {
     if (farthest_original_m == kNowhere) return;
     ++result.pixels;
     if (!shown) {
@@ -165,7 +165,8 @@ class Judge {
       return;
     }
     const Layer range = depth_range(shown->depth_m);
-    const double allowed = (range.far_m - range.near_m) + kDistanceTolerance * shown->distance_m;
+    const double along_ray = 1.0 / glm::dot(ray.direction, frame_.forward);  // the slab lies across forward, the ray may not
+    const double allowed = (range.far_m - range.near_m) * along_ray + kDistanceTolerance * shown->distance_m;
     if (shown->distance_m - farthest_original_m > allowed) ++result.gap_pixels;
   }
 

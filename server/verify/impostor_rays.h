@@ -1,7 +1,7 @@
 // Does an impostor keep its promise? Judged by rays against the original scene and against the GLB as written, whatever the technique.
 //
 // Gap pixel: the original covers the pixel and all pixels within 2 pixels of it, and the impostor there is transparent, or shows a point
-// farther than the farthest original hit of that disc by more than the thickness of its layer's slab. Parallax ratio: for a pixel that
+// farther than the farthest original hit of that disc by more than the thickness of its layer's slab, along the ray. Parallax ratio: for a pixel that
 // shows an opaque texel at Q, X is the original's point inside the layer's depth range on the ray from the reference viewpoint through Q;
 // the ratio is the angle between X and Q seen from the viewpoint, over alpha. Coverage is closed, so that a texel may be opaque though the
 // ray through Q itself passes its surface by up to one texel: then the surface found within one texel tells the depth of X, which stays on
