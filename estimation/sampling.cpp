@@ -1,7 +1,7 @@
 // Which frames calibration times (thesis 5.8.1, Fig. 5.5 and 5.6): clusters of the object hierarchy from random viewpoints, whole frames
-// from inside and around the scene with all, some or the surrounding objects, baked impostors from inside their view cells, alone and among
-// the originals of all other objects, and now and then an empty frame. The sequence depends on the seed alone; how far it gets, on the
-// frames' times.
+// from inside and around the scene with all, some or the surrounding objects, the busiest of them, baked impostors from inside their view
+// cells, alone and among the originals of all other objects, and now and then an empty frame. The sequence depends on the seed alone; how
+// far it gets, on the frames' times.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -156,13 +156,6 @@ class FrameSampler {
     return *node;
   }
 
-  [[nodiscard]] std::vector<std::uint32_t> objects_of(const HierarchyNode& node) const {
-    const auto first = hierarchy_.order.begin() + node.first;
-    std::vector<std::uint32_t> objects(first, first + node.count);
-    std::sort(objects.begin(), objects.end());
-    return objects;
-  }
-
   [[nodiscard]] Setup cluster() {
     const HierarchyNode& node = random_node();
     const double radius_m = 0.5 * node.bounds.diagonal();
@@ -170,7 +163,7 @@ class FrameSampler {
     const Vec3 direction = random_direction(rng_, -0.1, 0.9);
     Vec3 eye = node.bounds.centre() + distance_m * direction;
     if (node.bounds.contains(eye)) eye = node.bounds.centre() + kJustOutside * radius_m * direction;
-    std::vector<std::uint32_t> objects = objects_of(node);
+    std::vector<std::uint32_t> objects = objects_of(hierarchy_, node);
     if (rng_.uniform() < kOneKindShare) keep_one_kind(objects);
     return {view_towards(rng_, eye, node.bounds.centre(), camera_), {std::move(objects), {}}};
   }
@@ -278,7 +271,7 @@ class FrameSampler {
     Shaft shaft = shaft_frame(node.bounds.centre(), random_direction(rng_, 0.0, 0.6));
     shaft.tan_half = Vec2(std::tan(0.5 * std::array{0.19634954, 0.39269908, 0.78539816}[rng_.below(3)]));
     shaft.min_distance_m = node.bounds.diagonal() * log_uniform(rng_, 1.0, 8.0);
-    BakeRequest request{objects_of(node), shaft};
+    BakeRequest request{objects_of(hierarchy_, node), shaft};
     std::uint64_t triangles = 0;
     for (const std::uint32_t id : request.objects) triangles += scene_.objects[id].triangle_count;
     if (triangles > kMaxBakedTriangles || !plan_impostor(node.bounds, shaft, camera_, {}).possible) return std::nullopt;

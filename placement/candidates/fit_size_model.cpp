@@ -12,6 +12,7 @@
 #include "render/impostor/atlas.h"
 #include "render/impostor/technique.h"
 #include "render/impostor/texture_pyramid.h"
+#include "render/scene/object_bounds.h"
 
 namespace standin {
 
@@ -34,8 +35,7 @@ std::vector<std::uint32_t> spread_of_candidates(const std::vector<Candidate>& ca
 std::optional<SizeSample> bake_size_sample(const Scene& scene, const ObjectOutlines& outlines, const TexturePyramids& textures,
                                            const Candidate& candidate, const Camera& camera, const BakeQuality& quality,
                                            const WorkBudget& budget) {
-  Box bounds;
-  for (const std::uint32_t object : candidate.objects) bounds.extend(scene.objects[object].bounds);
+  const Box bounds = bounds_of(scene, candidate.objects);
   const ImpostorSketch sketch = sketch_impostor(bounds, outlines.of(candidate.objects), candidate.view_cell, camera, quality);
   if (!std::isfinite(sketch.layers)) return std::nullopt;
   try {

@@ -282,7 +282,7 @@ std::vector<LayerImage> record_layers(const Scene& scene, const TexturePyramids&
 }
 
 double depth_m(const RecordedTexel& texel, const Layer& layer) {
-  const double share = holds_centre(texel) ? texel.order : texel.order - kTouchOnly;
+  const double share = std::fmod(texel.order, kTouchOnly);  // the tiers are its multiples, depths within a layer at most 1
   return share > 0.0 ? layer.near_m + share * (layer.far_m - layer.near_m) : layer.near_m;
 }
 

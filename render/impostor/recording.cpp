@@ -5,6 +5,7 @@
 #include <string>
 
 #include "render/impostor/recorder.h"
+#include "render/scene/object_bounds.h"
 
 namespace standin {
 namespace {
@@ -15,12 +16,6 @@ void validate(const Scene& scene, const BakeRequest& request) {
     if (id >= scene.objects.size())
       throw Failure(ErrorWord::kBadUsage, "bake request names object " + std::to_string(id) + " of a scene with " +
                                               std::to_string(scene.objects.size()) + " objects");
-}
-
-Box bounds_of(const Scene& scene, std::span<const std::uint32_t> objects) {
-  Box bounds;
-  for (const std::uint32_t id : objects) bounds.extend(scene.objects[id].bounds);
-  return bounds;
 }
 
 std::vector<Vec3> world_vertices(const Scene& scene, std::span<const std::uint32_t> objects) {

@@ -5,6 +5,8 @@
 #include <span>
 #include <tuple>
 
+#include "render/scene/object_bounds.h"
+
 namespace standin {
 namespace {
 
@@ -17,12 +19,6 @@ constexpr int kAreaDepth = 48;
 double half_area(const Box& box) {
   const Vec3 s = box.size();
   return s.x * s.y + s.y * s.z + s.z * s.x;
-}
-
-Box bounds_of(const Scene& scene, std::span<const std::uint32_t> ids) {
-  Box bounds;
-  for (const std::uint32_t id : ids) bounds.extend(scene.objects[id].bounds);
-  return bounds;
 }
 
 struct Split {
@@ -141,6 +137,13 @@ Hierarchy build_hierarchy(const Scene& scene) {
     if (tree.nodes[n].count == 1) tree.leaf[tree.order[tree.nodes[n].first]] = static_cast<std::uint32_t>(n);
   }
   return tree;
+}
+
+std::vector<std::uint32_t> objects_of(const Hierarchy& hierarchy, const HierarchyNode& node) {
+  const auto first = hierarchy.order.begin() + node.first;
+  std::vector<std::uint32_t> objects(first, first + node.count);
+  std::sort(objects.begin(), objects.end());
+  return objects;
 }
 
 }  // namespace standin

@@ -29,5 +29,7 @@ struct Hierarchy {
 };
 
 [[nodiscard]] Hierarchy build_hierarchy(const Scene& scene);
+/// Ids of the cluster's objects, ascending.
+[[nodiscard]] std::vector<std::uint32_t> objects_of(const Hierarchy& hierarchy, const HierarchyNode& node);
 
 }  // namespace standin

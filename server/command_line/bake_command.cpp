@@ -13,6 +13,7 @@
 #include "render/impostor/technique.h"
 #include "render/impostor/texture_pyramid.h"
 #include "render/scene/load.h"
+#include "render/scene/object_bounds.h"
 #include "server/command_line/commands.h"
 #include "server/files/output_folder.h"
 #include "server/job/gpu_memory.h"
@@ -80,12 +81,6 @@ ViewCell parse_view_cell(const std::string& text, const Vec3& apex) {
   shaft.tan_half = Vec2(std::tan(glm::radians(n[3]) / 2.0));
   shaft.min_distance_m = n[4];
   return shaft;
-}
-
-Box bounds_of(const Scene& scene, const std::vector<std::uint32_t>& objects) {
-  Box bounds;
-  for (const auto id : objects) bounds.extend(scene.objects[id].bounds);
-  return bounds;
 }
 
 Impostor bake(const Scene& scene, const BakeRequest& request, const CommandContext& context) {

@@ -2,16 +2,9 @@
 
 #include <set>
 
+#include "render/scene/object_bounds.h"
+
 namespace standin {
-namespace {
-
-Box bounds_of(const Scene& scene, const std::vector<std::uint32_t>& objects) {
-  Box bounds;
-  for (const auto object : objects) bounds.extend(scene.objects[object].bounds);
-  return bounds;
-}
-
-}  // namespace
 
 FrameEstimator::FrameEstimator(const Scene& scene, const Camera& camera, const TimeModel& model, const ImpostorSet& impostors)
     : table_(scene, camera), model_(model), impostors_(impostors) {

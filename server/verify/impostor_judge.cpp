@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "render/base/error.h"
+#include "render/scene/object_bounds.h"
 #include "server/verify/impostor_rays.h"
 
 namespace standin {
@@ -30,12 +31,6 @@ std::vector<std::uint32_t> evenly_spaced(const std::vector<std::uint32_t>& order
   std::vector<std::uint32_t> chosen;
   for (std::size_t i = 0; i < wanted; ++i) chosen.push_back(order[i * (order.size() - 1) / (wanted - 1)]);
   return chosen;
-}
-
-Box bounds_of(const Scene& scene, const std::vector<std::uint32_t>& objects) {
-  Box bounds;
-  for (const auto object : objects) bounds.extend(scene.objects[object].bounds);
-  return bounds;
 }
 
 JudgedImpostor judged(const PlacementImpostor& placed, std::uint32_t id, double alpha_rad) {
@@ -66,21 +61,20 @@ void judge_impostors(const VerifyInput& input, const GlbQuads& glb, const Verify
   const std::vector<std::uint32_t> chosen = evenly_spaced(promising, wanted);
   for (std::size_t i = 0; i < chosen.size(); ++i) {
     budget.check();
-    budget.report("verify: rays", static_cast<double>(result.judged_views) / options.judged_views);
+    budget.report("verify: rays", static_cast<double>(sum.views) / options.judged_views);
     const std::uint32_t id = chosen[i];
     const auto count =
         static_cast<std::uint32_t>(options.judged_views * (i + 1) / chosen.size() - options.judged_views * i / chosen.size());
     const auto views = sample_cell_views(impostors[id].view_cell, bounds_of(input.scene, impostors[id].objects), count, options.seed + id);
     const ImpostorJudgement judgement =
         judge_impostor(input.scene, glb, judged(impostors[id], id, input.alpha_rad), input.camera, views, options.threads, budget);
-    result.judged_views += judgement.views;
-    result.gap_pixels += judgement.gap_pixels;
-    result.shown_pixels += judgement.shown_pixels;
-    result.baseless_pixels += judgement.baseless_pixels;
-    result.max_parallax_ratio = std::max(result.max_parallax_ratio, judgement.max_parallax_ratio);
-    sum.excess_pixels += judgement.excess_pixels;
-    sum.silhouette_px += judgement.silhouette_px;
+    sum.add(judgement);
   }
+  result.judged_views = sum.views;
+  result.gap_pixels = sum.gap_pixels;
+  result.shown_pixels = sum.shown_pixels;
+  result.baseless_pixels = sum.baseless_pixels;
+  result.max_parallax_ratio = sum.max_parallax_ratio;
   result.silhouette_bloat_px = sum.bloat_px();
   if (chosen.size() < promising.size())
     result.left_out.push_back("judging by rays: a sample of " + std::to_string(chosen.size()) + " of " + std::to_string(promising.size()) +

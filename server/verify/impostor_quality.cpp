@@ -6,6 +6,7 @@
 
 #include "render/device/renderer.h"
 #include "render/image/image_error.h"
+#include "render/scene/object_bounds.h"
 #include "server/verify/frame_pictures.h"
 #include "server/verify/shipped_impostors.h"
 
@@ -13,12 +14,6 @@ namespace standin {
 namespace {
 
 using nlohmann::json;
-
-Box bounds_of(const Scene& scene, const std::vector<std::uint32_t>& objects) {
-  Box bounds;
-  for (const auto object : objects) bounds.extend(scene.objects[object].bounds);
-  return bounds;
-}
 
 /// A placement of this one impostor, for whoever reads the file back.
 Placement placement_of(const Impostor& baked) {

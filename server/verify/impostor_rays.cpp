@@ -249,17 +249,21 @@ void add(const ImpostorJudgement& view, std::uint32_t index, ImpostorJudgement& 
     sum.worst_view = index;
     worst = view;
   }
-  sum.views += view.views;
-  sum.pixels += view.pixels;
-  sum.gap_pixels += view.gap_pixels;
-  sum.shown_pixels += view.shown_pixels;
-  sum.baseless_pixels += view.baseless_pixels;
-  sum.max_parallax_ratio = std::max(sum.max_parallax_ratio, view.max_parallax_ratio);
-  sum.excess_pixels += view.excess_pixels;
-  sum.silhouette_px += view.silhouette_px;
+  sum.add(view);
 }
 
 }  // namespace
+
+void ImpostorJudgement::add(const ImpostorJudgement& other) {
+  views += other.views;
+  pixels += other.pixels;
+  gap_pixels += other.gap_pixels;
+  shown_pixels += other.shown_pixels;
+  baseless_pixels += other.baseless_pixels;
+  max_parallax_ratio = std::max(max_parallax_ratio, other.max_parallax_ratio);
+  excess_pixels += other.excess_pixels;
+  silhouette_px += other.silhouette_px;
+}
 
 std::vector<ImpostorJudgement> judge_samplings(const Scene& scene, const GlbQuads& quads, const JudgedImpostor& impostor,
                                                const Camera& camera, std::span<const View> views, std::span<const AlphaSampling> samplings,

@@ -1,11 +1,12 @@
 // Does an impostor keep its promise? Judged by rays against the original scene and against the GLB as written, whatever the technique.
 //
 // Gap pixel: the original covers the pixel and all pixels within 2 pixels of it, and the impostor there is transparent, or shows a point
-// farther than the farthest original hit of that disc by more than the thickness of its layer's slab, along the ray. Parallax ratio: for a pixel that
-// shows an opaque texel at Q, X is the original's point inside the layer's depth range on the ray from the reference viewpoint through Q;
-// the ratio is the angle between X and Q seen from the viewpoint, over alpha. Coverage is closed, so that a texel may be opaque though the
-// ray through Q itself passes its surface by up to one texel: then the surface found within one texel tells the depth of X, which stays on
-// the ray (nearest-texel sampling shows it there). The promise is no gap pixel and a ratio of at most 1. Bloat: see silhouette.h.
+// farther than the farthest original hit of that disc by more than the thickness of its layer's slab, along the ray. Parallax ratio: for a
+// pixel that shows an opaque texel at Q, X is the original's point inside the layer's depth range on the ray from the reference viewpoint
+// through Q; the ratio is the angle between X and Q seen from the viewpoint, over alpha. Coverage is closed, so that a texel may be opaque
+// though the ray through Q itself passes its surface by up to one texel: then the surface found within one texel tells the depth of X,
+// which stays on the ray (nearest-texel sampling shows it there). The promise is no gap pixel and a ratio of at most 1. Bloat: see
+// silhouette.h.
 //
 // Layered impostors: a quad lies on its layer, whose slab and depth range are the layer's own. Meshes run through the layers: the
 // depth range, and so the slab, is that of the layer whose range holds the depth of Q, extended by that of one neighbouring layer on either
@@ -50,6 +51,8 @@ struct ImpostorJudgement {
   double silhouette_px = 0.0;       // length of the original's silhouette, over all views
   std::uint32_t worst_view = 0;     // index: most gap pixels, then greatest ratio
 
+  /// Sums and greatest ratio of both; worst_view stays.
+  void add(const ImpostorJudgement& other);
   /// Mean distance in pixels by which the silhouette exceeds the original's; none where no view shows a silhouette.
   [[nodiscard]] std::optional<double> bloat_px() const {
     return silhouette_px > 0.0 ? std::optional(static_cast<double>(excess_pixels) / silhouette_px) : std::nullopt;

@@ -20,6 +20,7 @@
 #include "render/impostor/texture_pyramid.h"
 #include "render/scene/hierarchy.h"
 #include "render/scene/load.h"
+#include "render/scene/object_bounds.h"
 #include "server/verify/impostor_rays.h"
 
 namespace standin {
@@ -87,7 +88,7 @@ class Bench {
     for (std::uint64_t attempt = 0; sum.impostors < arguments_.impostors && attempt < 20ULL * arguments_.impostors; ++attempt) {
       Rng rng(7, attempt);
       const HierarchyNode& node = random_node(rng);
-      BakeRequest request{objects_of(node), random_cell(node.bounds, arguments_.nearest_diagonals, rng)};
+      BakeRequest request{objects_of(hierarchy_, node), random_cell(node.bounds, arguments_.nearest_diagonals, rng)};
       try {
         add(bake_impostor(scene_, textures_, arguments_.technique, request, camera_, arguments_.quality), attempt, sum);
       } catch (const Failure& failure) {
@@ -107,18 +108,9 @@ class Bench {
     return *node;
   }
 
-  [[nodiscard]] std::vector<std::uint32_t> objects_of(const HierarchyNode& node) const {
-    const auto first = hierarchy_.order.begin() + node.first;
-    std::vector<std::uint32_t> objects(first, first + node.count);
-    std::sort(objects.begin(), objects.end());
-    return objects;
-  }
-
   void add(const Impostor& impostor, std::uint64_t seed, Sum& sum) {
     if (impostor.empty()) return;
     const GlbQuads written = read_glb_quads(encode_impostor_glb(pack_atlas({impostor})));
-    Box bounds;
-    for (const std::uint32_t object : impostor.objects) bounds.extend(scene_.objects[object].bounds);
     const JudgedImpostor judged{"imp_0",
                                 impostor.objects,
                                 impostor.layers,
@@ -128,7 +120,7 @@ class Bench {
                                 camera_.pixel_angle_rad(),
                                 impostor.technique,
                                 impostor.frame.slope_step};
-    const auto views = sample_cell_views(impostor.view_cell, bounds, arguments_.views, seed);
+    const auto views = sample_cell_views(impostor.view_cell, bounds_of(scene_, impostor.objects), arguments_.views, seed);
     const ImpostorJudgement one = judge_impostor(scene_, written, judged, camera_, views, 2, {});
     if (one.gap_pixels > 0 || one.max_parallax_ratio > 1.0)
       std::fprintf(stderr, "  seed %llu: %zu objects, %zu layers, %llu gaps, ratio %.3f\n", static_cast<unsigned long long>(seed),
@@ -136,14 +128,7 @@ class Bench {
                    one.max_parallax_ratio);
     ++sum.impostors;
     sum.layers += static_cast<std::uint32_t>(impostor.layers.size());
-    sum.judged.views += one.views;
-    sum.judged.pixels += one.pixels;
-    sum.judged.gap_pixels += one.gap_pixels;
-    sum.judged.shown_pixels += one.shown_pixels;
-    sum.judged.baseless_pixels += one.baseless_pixels;
-    sum.judged.excess_pixels += one.excess_pixels;
-    sum.judged.silhouette_px += one.silhouette_px;
-    sum.judged.max_parallax_ratio = std::max(sum.judged.max_parallax_ratio, one.max_parallax_ratio);
+    sum.judged.add(one);
   }
 
   const Arguments& arguments_;

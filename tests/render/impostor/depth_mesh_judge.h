@@ -83,16 +83,11 @@ inline void judge_mesh_pixel(const std::vector<Surface>& original, const std::ve
 /// Rays from all over the view cell to random points of the original.
 [[nodiscard]] inline MeshVerdict judge_mesh(const std::vector<Surface>& original, const DepthMeshImpostor& impostor, double pixel_rad,
                                             int rays, std::uint64_t seed) {
-  Rng rng(seed, 78);
   const std::vector<Surface> drawn = surfaces_of(impostor);
   MeshVerdict verdict;
-  for (int i = 0; i < rays; ++i) {
-    const WorldTriangle& t = original[rng.below(original.size())].corners;
-    double u = rng.uniform(), v = rng.uniform();
-    if (u + v > 1.0) u = 1.0 - u, v = 1.0 - v;
-    const Vec3 viewpoint = random_viewpoint(rng, impostor.view_cell), target = t[0] + u * (t[1] - t[0]) + v * (t[2] - t[0]);
-    judge_mesh_pixel(original, drawn, impostor, viewpoint, target - viewpoint, pixel_rad, verdict);
-  }
+  for_each_random_ray(original, impostor.view_cell, rays, Rng(seed, 78), [&](const Vec3& viewpoint, const Vec3& direction) {
+    judge_mesh_pixel(original, drawn, impostor, viewpoint, direction, pixel_rad, verdict);
+  });
   return verdict;
 }
 

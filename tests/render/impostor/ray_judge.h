@@ -163,19 +163,26 @@ inline void judge_pixel(const std::vector<Surface>& original, const Impostor& im
   return shaft.apex + distance * (shaft.axis + x * shaft.right + y * shaft.up);
 }
 
-/// Rays from random viewpoints of the cell to random points of the original.
-[[nodiscard]] inline Verdict judge(const std::vector<Surface>& original, const Impostor& impostor, double pixel_rad, int rays,
-                                   std::uint64_t seed) {
-  Rng rng(seed, 77);
-  const DrawnImpostor drawn(impostor);
-  Verdict verdict;
+/// visit(viewpoint, direction) for rays from random viewpoints of the cell to random points of the original.
+template <class Visit>
+void for_each_random_ray(const std::vector<Surface>& original, const ViewCell& cell, int rays, Rng rng, const Visit& visit) {
   for (int i = 0; i < rays; ++i) {
     const WorldTriangle& t = original[rng.below(original.size())].corners;
     double u = rng.uniform(), v = rng.uniform();
     if (u + v > 1.0) u = 1.0 - u, v = 1.0 - v;
-    const Vec3 viewpoint = random_viewpoint(rng, impostor.view_cell), target = t[0] + u * (t[1] - t[0]) + v * (t[2] - t[0]);
-    judge_pixel(original, impostor, drawn, viewpoint, target - viewpoint, pixel_rad, verdict);
+    const Vec3 viewpoint = random_viewpoint(rng, cell), target = t[0] + u * (t[1] - t[0]) + v * (t[2] - t[0]);
+    visit(viewpoint, target - viewpoint);
   }
+}
+
+/// Rays from random viewpoints of the cell to random points of the original.
+[[nodiscard]] inline Verdict judge(const std::vector<Surface>& original, const Impostor& impostor, double pixel_rad, int rays,
+                                   std::uint64_t seed) {
+  const DrawnImpostor drawn(impostor);
+  Verdict verdict;
+  for_each_random_ray(original, impostor.view_cell, rays, Rng(seed, 77), [&](const Vec3& viewpoint, const Vec3& direction) {
+    judge_pixel(original, impostor, drawn, viewpoint, direction, pixel_rad, verdict);
+  });
   return verdict;
 }
 
