@@ -47,7 +47,7 @@ function axis({ label, log = false, zero = false, ticks }) {
   return {
     type: "quantitative",
     title: label,
-    scale: log ? { type: "log", nice: false, padding: 12 } : { zero, padding: 12, nice: zero },
+    scale: log ? { type: "log", nice: false, padding: 12 } : { zero, nice: false, padding: 12 },  // a label at the very edge would push the title up
     axis: ticks ? { values: ticks, labelExpr: "format(datum.value, '~r')" } : { tickCount: 5 },
   };
 }
@@ -76,13 +76,15 @@ export function vegaLiteSpec(figure) {
   const names = [...new Set(figure.panels.flatMap((panel) => panel.series.map(({ name }) => name)))];
   return {
     $schema: "https://vega.github.io/schema/vega-lite/v6.json",
-    title: figure.title ? { text: figure.title, anchor: "middle", fontSize: 14 } : undefined,
+    title: figure.title ? { text: figure.title, anchor: "middle", fontSize: 14, offset: 18 } : undefined,
     background: "white",
     padding: 12,
     columns: figure.columns ?? 3,
-    spacing: 36,
+    spacing: { row: 84, column: 80 },
+    bounds: "flush",  // else a legend wider than a panel pushes the columns apart
     concat: figure.panels.map((panel) => panelSpec(panel, names)),
     config: {
+      aria: false,  // half of the file; the page describes the figure
       font: "sans-serif",
       axis: { labelFontSize: 11, titleFontSize: 12, titleFontWeight: "normal", gridColor: "#e4e4e4", titlePadding: 8 },
       legend: { labelFontSize: 11 },
