@@ -80,7 +80,7 @@ void print_row(const Scene& scene, const TexturePyramids& textures, const Argume
   const DepthMeshSummary& s = tdm.summary;
   const double steps_s = s.record_s + s.mesh_s + s.simplify_s + s.texture_s;
   const auto percent = [&](double step_s) { return steps_s > 0.0 ? 100.0 * step_s / steps_s : 0.0; };
-  std::printf("| %.0f | %u | %u | %llu | %llu | %zu | %.1f | %.1f | %.3f | %.0f %.0f %.0f %.0f | %zu | %.1f | %.3f |\n", distance_m,
+  std::printf("| %.0f | %u | %u | %llu | %llu | %zu | %.1f | %.1f | %.3f | %.0f %.0f %.0f %.0f | %zu | %.1f | %.4f |\n", distance_m,
               s.layers, s.meshes, static_cast<unsigned long long>(s.initial_polygons), static_cast<unsigned long long>(s.triangles),
               tdm.mesh.charts.size(), kilobytes(bytes_with_gutters(tdm.mesh)),
               kilobytes(20 * tdm.mesh.vertices.size() + 4 * tdm.mesh.indices.size()), tdm_s, percent(s.record_s), percent(s.mesh_s),
