@@ -13,7 +13,8 @@
 // Points are joined in the order given unless "line" is false; "labels" are written beside points. Series of one name look the same in all panels, so
 // that one legend serves them. A table is one panel: its first column is x, every other column with a number is a series named by the header.
 // Same input, same bytes.
-import { readFileSync, writeFileSync } from "node:fs";
+import { readFileSync, realpathSync, writeFileSync } from "node:fs";
+import { pathToFileURL } from "node:url";
 import { parseArgs } from "node:util";
 import { compile } from "vega-lite";
 import { parse, View } from "vega";
@@ -107,4 +108,4 @@ async function main() {
   writeFileSync(output, await draw(input.endsWith(".csv") ? figureOfTable(text, values) : JSON.parse(text)));
 }
 
-if (import.meta.url === `file://${process.argv[1]}` || process.argv[1]?.endsWith("draw.mjs")) await main();
+if (process.argv[1] && import.meta.url === pathToFileURL(realpathSync(process.argv[1])).href) await main();
