@@ -71,22 +71,40 @@ SizeModels fit_sizes(const Surveyed& job, const Subdivision& whole, const JobSpe
   const World& world = job.world;
   const TimeModel& model = job.target.model;
   SizeModels sizes;
-  sizes.layered = default_size_model();
-  if (spec.techniques != "layered") sizes.depth_mesh = default_size_model(Technique::kDepthMesh);
+  for (const Technique technique : techniques_of(spec)) sizes.offer(technique, default_size_model(technique));
   if (spec.size_bakes == 0) return sizes;
   constexpr double kProbeShare = 0.6;  // enough slow regions for typical candidates
   const Subdivision probe = problem_views(world, model, kProbeShare * whole.worst_predicted_ms, budget);
-  CandidateSet set =
+  const CandidateSet set =
       generate_candidates(world.scene, world.hierarchy, probe, model, sizes, world.camera, world.quality, job.candidate_options, budget);
-  const auto meshes = std::stable_partition(set.candidates.begin(), set.candidates.end(),
-                                            [](const Candidate& candidate) { return candidate.technique == Technique::kLayered; });
-  const auto fit = [&](auto first, auto last) {
-    const std::vector<Candidate> of_one(first, last);
-    return fit_size_model(world.scene, of_one, world.camera, world.quality, spec.size_bakes, spec.seed, world.threads, budget);
-  };
-  if (meshes != set.candidates.end()) sizes.depth_mesh = fit(meshes, set.candidates.end());
-  if (meshes != set.candidates.begin()) sizes.layered = fit(set.candidates.begin(), meshes);
+  for (const Technique technique : techniques_of(spec)) {
+    std::vector<Candidate> of_one;
+    std::ranges::copy_if(set.candidates, std::back_inserter(of_one), [&](const Candidate& c) { return c.technique == technique; });
+    if (of_one.empty()) continue;
+    sizes.offer(technique,
+                fit_size_model(world.scene, of_one, world.camera, world.quality, spec.size_bakes, spec.seed, world.threads, budget));
+  }
   return sizes;
+}
+
+json size_models_json(const SizeModels& sizes) {
+  json models = json::object();
+  for (std::size_t t = 0; t < kTechniqueCount; ++t) {
+    const auto technique = static_cast<Technique>(t);
+    if (!sizes.offers(technique)) continue;
+    const SizeModel& model = sizes.of(technique);
+    models[std::string(technique_name(technique))] = {{"bakes", model.bakes}, {"median_error", model.median_error}};
+  }
+  return models;
+}
+
+json impostor_counts(const Placement& placement) {
+  json counts = {{"count", placement.impostors.size()}, {"by_technique", json::object()}};
+  for (const auto& impostor : placement.impostors) {
+    json& count = counts["by_technique"][impostor.technique];
+    count = count.is_null() ? 1 : count.get<int>() + 1;
+  }
+  return counts;
 }
 
 // What impostors could do for the worst views; where the placement at hand has no problem view, nobody asks.
@@ -188,7 +206,7 @@ json common_metrics(const Surveyed& job, const StageClock& clock) {
             {"coverage", job.target.model.coverage},
             {"median_error", job.target.median_error},
             {"p90_error", job.target.p90_error}}},
-          {"size_model", {{"bakes", job.sizes.layered.bakes}, {"median_error", job.sizes.layered.median_error}}},
+          {"size_model", size_models_json(job.sizes)},
           {"survey", survey_json(job)},
           {"stages_s", clock.seconds()},
           {"left_out", clock.left_out()},
@@ -396,7 +414,7 @@ JobOutcome run_place(const JobFiles& files, const JobSpec& spec, const WorkBudge
                            {"duplicates", candidates.duplicates},
                            {"impossible", candidates.impossible},
                            {"hopeless", candidates.hopeless}};
-  metrics["impostors"] = {{"count", placed.placement.impostors.size()}};
+  metrics["impostors"] = impostor_counts(placed.placement);
   metrics["select"] = select_metrics(placed.selected, placed.placement);
   metrics["memory"] = memory_json(placed.placement, placed.set, std::move(gpu_compression));
   metrics["bound"] = bound_json(placed.selected.selection.summary);

@@ -1,8 +1,9 @@
 // Candidates of every node, node by node and independent of each other.
 #include <algorithm>
 #include <iterator>
+#include <set>
 
-#include "placement/candidates/draft.h"
+#include "placement/candidates/planar_parts.h"
 #include "render/base/parallel.h"
 
 namespace standin {
@@ -23,6 +24,7 @@ class NodeCandidates {
     const bool boxes = options.shape == CellShape::kBox;
     serve_cubes(boxes ? 0 : leaf_level);
     if (!boxes) serve_pyramids(grid, leaf_level, options.apex_deg);
+    if (context_.sizes.offers(Technique::kPlanar)) serve_planar_parts();
     return std::move(set_);
   }
 
@@ -30,9 +32,9 @@ class NodeCandidates {
   // A larger view cell around one of these costs more than the tight one: cells that fail here serve in no set.
   void serve_single_cells() {
     for (const std::uint32_t cell : context_.index.cells_seeing(node_)) {
-      ++set_.generated;
-      auto draft = draft_candidate(context_, node_, {cell});
-      if (!draft) {
+      auto drafts = draft_candidates(context_, node_, {cell});
+      set_.generated += std::max<std::size_t>(drafts.size(), 1);
+      if (drafts.empty()) {
         ++set_.impossible;
         continue;
       }
@@ -40,12 +42,10 @@ class NodeCandidates {
       const IdRange cpvs = context_.index.cpvs(cell);
       for (std::uint32_t p = cpvs.begin; p < cpvs.end; ++p)
         useful.terms_ms.push_back(context_.index.terms_ms(context_.subdivision.cpvs[p], node_));
-      if (!gains(useful, draft->cost)) {
-        ++set_.hopeless;
-        continue;
-      }
+      set_.hopeless += std::erase_if(drafts, [&](const Draft& draft) { return !gains(useful, draft.cost); });
+      if (drafts.empty()) continue;
       useful_.push_back(std::move(useful));
-      keep(std::move(*draft));
+      keep(std::move(drafts));
     }
   }
 
@@ -76,28 +76,55 @@ class NodeCandidates {
   }
 
   void serve(const CellSet& cells) {
-    auto draft = draft_candidate(context_, node_, cells);
-    if (!draft)
+    auto drafts = draft_candidates(context_, node_, cells);
+    if (drafts.empty())
       ++set_.impossible;
-    else if (!gains_anywhere(cells, draft->cost))
-      ++set_.hopeless;
     else
-      keep(std::move(*draft));
+      set_.generated += drafts.size() - 1;  // the set itself is counted
+    set_.hopeless += std::erase_if(drafts, [&](const Draft& draft) { return !gains_anywhere(cells, draft.cost); });
+    keep(std::move(drafts));
+    if (context_.sizes.offers(Technique::kPlanar)) served_.insert(cells);
   }
 
-  void keep(Draft layered) {
-    if (belongs_to_child(context_, node_, layered.candidate.cells)) {
-      ++set_.duplicates;
+  /// Of all sets served so far that one layer is not enough for.
+  void serve_planar_parts() {
+    const std::set<CellSet> whole = served_;
+    for (const UsefulCell& useful : useful_) served_.insert({useful.cell});
+    for (const CellSet& cells : whole)
+      if (!draft_planar(context_, node_, cells)) serve_halves(cells, 1);
+  }
+
+  void serve_halves(const CellSet& cells, int depth) {
+    constexpr int kMostHalvings = 4;
+    const auto halves = halved_across(context_, node_, cells);
+    if (halves.second.empty()) return;
+    for (const CellSet* half : {&halves.first, &halves.second}) {
+      if (!served_.insert(*half).second) continue;  // it was offered as whatever it needs, and is halved in its own turn
+      ++set_.generated;
+      if (auto draft = draft_planar(context_, node_, *half)) {
+        serve_part(std::move(*draft));
+        continue;
+      }
+      ++set_.impossible;
+      if (depth < kMostHalvings && half->size() > 1) serve_halves(*half, depth + 1);
+    }
+  }
+
+  void serve_part(Draft planar) {
+    if (!gains_anywhere(planar.candidate.cells, planar.cost))
+      ++set_.hopeless;
+    else
+      keep({std::move(planar)});
+  }
+
+  /// All of one cluster and view cell.
+  void keep(std::vector<Draft> drafts) {
+    if (drafts.empty()) return;
+    if (belongs_to_child(context_, node_, drafts.front().candidate.cells)) {
+      set_.duplicates += drafts.size();
       return;
     }
-    std::optional<Draft> mesh = as_depth_mesh(context_, layered);
-    set_.candidates.push_back(std::move(layered.candidate));
-    if (!mesh) return;
-    ++set_.generated;
-    if (gains_anywhere(mesh->candidate.cells, mesh->cost))
-      set_.candidates.push_back(std::move(mesh->candidate));
-    else
-      ++set_.hopeless;
+    for (Draft& draft : drafts) set_.candidates.push_back(std::move(draft.candidate));
   }
 
   [[nodiscard]] bool gains(const UsefulCell& useful, const Cost& cost) const {
@@ -119,6 +146,7 @@ class NodeCandidates {
   const DraftContext& context_;
   std::uint32_t node_;
   std::vector<UsefulCell> useful_;  // ascending cells
+  std::set<CellSet> served_;        // where planar parts are asked for
   CandidateSet set_;
 };
 

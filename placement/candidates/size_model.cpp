@@ -215,7 +215,7 @@ SizeEstimate estimate_size(const SizeModel& model, const SizeInput& input) {
 // has the commands). Bytes are 4 S' and drawn texels S, in one layer.
 SizeModel default_size_model(Technique technique) {
   SizeModel model;
-  if (technique == Technique::kDepthMesh) {
+  if (is_mesh(technique)) {
     // Its size follows the silhouette; layers matter little.
     model.log_bytes = {1.8, 1.0, 0.3, 0.0, 0.2};
     model.log_texels = {0.4, 1.0, 0.3, 0.0, 0.2};

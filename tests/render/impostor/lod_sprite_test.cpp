@@ -198,18 +198,18 @@ TEST(SpriteContraction, ALoosePartThatAnotherShowsIsTakenAway) {
   EXPECT_EQ(contracted(mesh, points, viewpoints, 1e-6).triangles.size(), 3U);
 }
 
-TEST(TriangleGrid, AgreesWithAskingEveryTriangle) {
+TEST(TriangleTree, AgreesWithAskingEveryTriangle) {
   Rng rng(11);
   std::vector<Triangle> triangles = test::random_triangles(rng, {Vec3(-4, -3, -2), Vec3(4, 3, 2)}, 60);
-  const TriangleGrid grid(triangles);
+  const TriangleTree tree(triangles);
   for (int i = 0; i < 400; ++i) {
     const Vec3 point = test::random_point(rng, {Vec3(-8, -8, -8), Vec3(8, 8, 8)});
     double least = std::numeric_limits<double>::infinity();
     for (const Triangle& t : triangles) least = std::min(least, glm::length(point_at(t, nearest_barycentric(t, point)) - point));
-    const auto nearest = grid.nearest(point, std::numeric_limits<double>::infinity());
+    const auto nearest = tree.nearest(point, std::numeric_limits<double>::infinity());
     ASSERT_TRUE(nearest.has_value());
     EXPECT_NEAR(nearest->distance, least, 1e-12);
-    EXPECT_FALSE(grid.nearest(point, 0.99 * least).has_value());
+    EXPECT_FALSE(tree.nearest(point, 0.99 * least).has_value());
   }
 }
 
