@@ -13,6 +13,7 @@ namespace {
 struct UsefulCell {
   std::uint32_t cell = 0;
   std::vector<double> terms_ms;  // of the node's objects, per CPV of the cell
+  bool for_layers = false;       // a layered one is
 };
 
 class NodeCandidates {
@@ -22,8 +23,10 @@ class NodeCandidates {
   CandidateSet generate(const DirectionGrid& grid, int leaf_level, const CandidateOptions& options) {
     serve_single_cells();
     const bool boxes = options.shape == CellShape::kBox;
-    serve_cubes(boxes ? 0 : leaf_level);
-    if (!boxes) serve_pyramids(grid, leaf_level, options.apex_deg);
+    for (const CellSet& cells : cells_to_serve()) {
+      serve_cubes(cells, boxes ? 0 : leaf_level);
+      if (!boxes) serve_pyramids(cells, grid, leaf_level, options.apex_deg);
+    }
     if (context_.sizes.offers(Technique::kPlanar)) serve_planar_parts();
     return std::move(set_);
   }
@@ -38,31 +41,37 @@ class NodeCandidates {
         ++set_.impossible;
         continue;
       }
-      UsefulCell useful{cell, {}};
+      UsefulCell useful{cell, {}, false};
       const IdRange cpvs = context_.index.cpvs(cell);
       for (std::uint32_t p = cpvs.begin; p < cpvs.end; ++p)
         useful.terms_ms.push_back(context_.index.terms_ms(context_.subdivision.cpvs[p], node_));
       set_.hopeless += std::erase_if(drafts, [&](const Draft& draft) { return !gains(useful, draft.cost); });
       if (drafts.empty()) continue;
+      useful.for_layers = drafts.front().candidate.technique == Technique::kLayered;
       useful_.push_back(std::move(useful));
       keep(std::move(drafts));
     }
   }
 
-  void serve_cubes(int coarsest_level) {
-    for (const CellSet& cells : distinct(box_cell_sets(useful_cells(), context_.subdivision, coarsest_level))) serve(cells);
+  void serve_cubes(const CellSet& useful, int coarsest_level) {
+    for (const CellSet& cells : distinct(box_cell_sets(useful, context_.subdivision, coarsest_level))) serve(cells);
   }
 
-  void serve_pyramids(const DirectionGrid& grid, int leaf_level, std::span<const double> apex_deg) {
-    const auto groups = group_cells(useful_cells(), context_.subdivision, leaf_level);
+  void serve_pyramids(const CellSet& useful, const DirectionGrid& grid, int leaf_level, std::span<const double> apex_deg) {
+    const auto groups = group_cells(useful, context_.subdivision, leaf_level);
     for (const GroupSet& set : distinct(shaft_group_sets(context_.hierarchy.nodes[node_].bounds, groups, grid, apex_deg)))
       serve(cells_of(set, groups));
   }
 
-  [[nodiscard]] CellSet useful_cells() const {
-    CellSet cells;
-    for (const UsefulCell& useful : useful_) cells.push_back(useful.cell);
-    return cells;
+  /// Those that a layered impostor is useful for, and all: further techniques add sets and take none away.
+  [[nodiscard]] std::vector<CellSet> cells_to_serve() const {
+    CellSet for_layers, all;
+    for (const UsefulCell& useful : useful_) {
+      all.push_back(useful.cell);
+      if (useful.for_layers) for_layers.push_back(useful.cell);
+    }
+    if (for_layers == all || for_layers.empty()) return {all};
+    return {for_layers, all};
   }
 
   template <class Set>
@@ -76,6 +85,10 @@ class NodeCandidates {
   }
 
   void serve(const CellSet& cells) {
+    if (offers_more_than_layers() && !served_.insert(cells).second) {
+      ++set_.duplicates;
+      return;
+    }
     auto drafts = draft_candidates(context_, node_, cells);
     if (drafts.empty())
       ++set_.impossible;
@@ -83,7 +96,6 @@ class NodeCandidates {
       set_.generated += drafts.size() - 1;  // the set itself is counted
     set_.hopeless += std::erase_if(drafts, [&](const Draft& draft) { return !gains_anywhere(cells, draft.cost); });
     keep(std::move(drafts));
-    if (context_.sizes.offers(Technique::kPlanar)) served_.insert(cells);
   }
 
   /// Of all sets served so far that one layer is not enough for.
@@ -127,6 +139,11 @@ class NodeCandidates {
     for (Draft& draft : drafts) set_.candidates.push_back(std::move(draft.candidate));
   }
 
+  [[nodiscard]] bool offers_more_than_layers() const {
+    const auto offered = [&](Technique technique) { return context_.sizes.offers(technique); };
+    return offered(Technique::kDepthMesh) || offered(Technique::kPlanar) || offered(Technique::kLodSprite);
+  }
+
   [[nodiscard]] bool gains(const UsefulCell& useful, const Cost& cost) const {
     const std::uint32_t first = context_.index.cpvs(useful.cell).begin;
     for (std::uint32_t i = 0; i < useful.terms_ms.size(); ++i)
@@ -146,7 +163,7 @@ class NodeCandidates {
   const DraftContext& context_;
   std::uint32_t node_;
   std::vector<UsefulCell> useful_;  // ascending cells
-  std::set<CellSet> served_;        // where planar parts are asked for
+  std::set<CellSet> served_;        // of two or more cells; not kept where layered impostors alone are offered
   CandidateSet set_;
 };
 
