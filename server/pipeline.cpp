@@ -66,24 +66,28 @@ Subdivision problem_views(const World& world, const TimeModel& model, double pre
                    options, budget);
 }
 
+// From real bakes of the technique's own candidates. Of what else is offered, layered impostors alone decide which those are: so the law of
+// one technique is the same whatever stands beside it.
+SizeModel fit_sizes(const Surveyed& job, const Subdivision& probe, Technique technique, const JobSpec& spec, const WorkBudget& budget) {
+  const World& world = job.world;
+  SizeModels sizes;
+  for (const Technique offered : techniques_of(spec))
+    if (offered == technique || offered == Technique::kLayered) sizes.offer(offered, default_size_model(offered));
+  CandidateSet set = generate_candidates(world.scene, world.hierarchy, probe, job.target.model, sizes, world.camera, world.quality,
+                                         job.candidate_options, budget);
+  std::erase_if(set.candidates, [&](const Candidate& candidate) { return candidate.technique != technique; });
+  if (set.candidates.empty()) return default_size_model(technique);
+  return fit_size_model(world.scene, set.candidates, world.camera, world.quality, spec.size_bakes, spec.seed, world.threads, budget);
+}
+
 // What an impostor will weigh, from real bakes of this scene's own candidates (thesis 5.8.1).
 SizeModels fit_sizes(const Surveyed& job, const Subdivision& whole, const JobSpec& spec, const WorkBudget& budget) {
-  const World& world = job.world;
-  const TimeModel& model = job.target.model;
   SizeModels sizes;
   for (const Technique technique : techniques_of(spec)) sizes.offer(technique, default_size_model(technique));
   if (spec.size_bakes == 0) return sizes;
   constexpr double kProbeShare = 0.6;  // enough slow regions for typical candidates
-  const Subdivision probe = problem_views(world, model, kProbeShare * whole.worst_predicted_ms, budget);
-  const CandidateSet set =
-      generate_candidates(world.scene, world.hierarchy, probe, model, sizes, world.camera, world.quality, job.candidate_options, budget);
-  for (const Technique technique : techniques_of(spec)) {
-    std::vector<Candidate> of_one;
-    std::ranges::copy_if(set.candidates, std::back_inserter(of_one), [&](const Candidate& c) { return c.technique == technique; });
-    if (of_one.empty()) continue;
-    sizes.offer(technique,
-                fit_size_model(world.scene, of_one, world.camera, world.quality, spec.size_bakes, spec.seed, world.threads, budget));
-  }
+  const Subdivision probe = problem_views(job.world, job.target.model, kProbeShare * whole.worst_predicted_ms, budget);
+  for (const Technique technique : techniques_of(spec)) sizes.offer(technique, fit_sizes(job, probe, technique, spec, budget));
   return sizes;
 }
 
