@@ -57,17 +57,20 @@ test("planar impostors serve cells that layered ones do not", () => {
 });
 
 // Without layered impostors some regions may have no solution (exit code 1): the rest is written.
-test("meshes alone: both kinds, and no other; verify judges them", () => {
-  const out = join(folder, "meshes");
-  const { code, err } = standin("place", city, ...smallJob, ...budget, "--techniques", "lod-sprite,tdm", "-o", out);
-  const { placement, metrics, count } = expectSound(out);
+test("LOD-sprites alone: no other kind; verify judges them", () => {
+  const out = join(folder, "sprites");
+  const { code, err } = standin("place", city, ...smallJob, ...budget, "--techniques", "lod-sprite", "-o", out);
+  const { metrics, count } = expectSound(out);
   assert.equal(code, metrics.cpv.unsolved > 0 ? 1 : 0, err);
-  assert.equal(placement.spec.impostors.techniques, "tdm,lod-sprite", "the order in which they are named changes nothing");
-  assert.deepEqual(Object.keys(count).sort(), ["lod-sprite", "tdm"]);
+  assert.deepEqual(Object.keys(count), ["lod-sprite"]);
   expectExit(0, "verify", out, "--views", "8", "--quiet");
-  const { verify, image } = readJson(join(out, "verify.json"));
-  assert.equal(verify.over_budget_estimated, 0);
+  const { image } = readJson(join(out, "verify.json"));
   assert.ok(image.mean_error < 0.1, `mean error ${image.mean_error}`);
+});
+
+test("the order in which techniques are named changes nothing", () => {
+  const config = JSON.parse(expectExit(0, "place", "--techniques", "lod-sprite,tdm,layered,tdm", "--print-config").out);
+  assert.equal(config.impostors.techniques, "layered,tdm,lod-sprite");
 });
 
 test("verify accepts what was placed with all techniques", () => {
