@@ -66,6 +66,19 @@ Subdivision problem_views(const World& world, const TimeModel& model, double pre
                    options, budget);
 }
 
+// Meshes are sampled where a layered impostor is a candidate as well, if those are offered: the others are large, slow to bake and hardly
+// ever chosen.
+void keep_samples(Technique technique, bool beside_layers, std::vector<Candidate>& candidates) {
+  std::vector<Candidate> kept;
+  const Candidate* layered = nullptr;  // of the cluster and cells at hand: it comes first
+  for (const Candidate& candidate : candidates) {
+    if (candidate.technique == Technique::kLayered) layered = &candidate;
+    const bool has_layered = layered != nullptr && layered->node == candidate.node && layered->cells == candidate.cells;
+    if (candidate.technique == technique && (!beside_layers || !is_mesh(technique) || has_layered)) kept.push_back(candidate);
+  }
+  candidates = std::move(kept);
+}
+
 // From real bakes of the technique's own candidates. Of what else is offered, layered impostors alone decide which those are: so the law of
 // one technique is the same whatever stands beside it.
 SizeModel fit_sizes(const Surveyed& job, const Subdivision& probe, Technique technique, const JobSpec& spec, const WorkBudget& budget) {
@@ -75,7 +88,7 @@ SizeModel fit_sizes(const Surveyed& job, const Subdivision& probe, Technique tec
     if (offered == technique || offered == Technique::kLayered) sizes.offer(offered, default_size_model(offered));
   CandidateSet set = generate_candidates(world.scene, world.hierarchy, probe, job.target.model, sizes, world.camera, world.quality,
                                          job.candidate_options, budget);
-  std::erase_if(set.candidates, [&](const Candidate& candidate) { return candidate.technique != technique; });
+  keep_samples(technique, sizes.offers(Technique::kLayered), set.candidates);
   if (set.candidates.empty()) return default_size_model(technique);
   return fit_size_model(world.scene, set.candidates, world.camera, world.quality, spec.size_bakes, spec.seed, world.threads, budget);
 }

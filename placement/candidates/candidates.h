@@ -59,8 +59,8 @@ struct CandidateSet {
 [[nodiscard]] SizeModel default_size_model(Technique technique = Technique::kLayered);
 
 /// Lowest predicted time each CPV can be brought to by any disjoint candidates (tree DP: V(node) = max(best own gain, sum of V(children))),
-/// each candidate of whichever offered technique gains most, in a shaft tight around the CPV's own cell. One value per CPV; `blockers` names
-/// the objects that make up most of what is left.
+/// each candidate of whichever offered technique gains most, in a shaft tight around the CPV's own cell. One value per CPV; `blockers`
+/// names the objects that make up most of what is left.
 struct Reach {
   std::vector<double> predicted_ms;                  // per CPV
   std::vector<std::vector<std::uint32_t>> blockers;  // per CPV, at most 5 objects, largest first

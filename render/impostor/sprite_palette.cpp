@@ -52,7 +52,7 @@ std::map<Rgba, std::uint32_t> places_of(std::span<const PlainColour> plain) {
 }  // namespace
 
 std::vector<PlainColour> plain_colours(const SpriteMesh& mesh, const SimplifiedMesh& on_lattice, const SampleColour& colour,
-                                        const WorkBudget& budget) {
+                                       const WorkBudget& budget) {
   std::vector<PlainColour> plain;
   for (const TriangleCorners& t : mesh.triangles) {
     budget.check();
@@ -83,7 +83,8 @@ void append_palette(const SpriteMesh& mesh, std::span<const PlainColour> plain, 
   chart.charts.push_back(added);
   const std::size_t first = texels.size();
   texels.resize(first + std::size_t{4} * width * height, 0);
-  for (const auto& [rgba, place] : places) std::copy(rgba.begin(), rgba.end(), texels.begin() + static_cast<std::ptrdiff_t>(first + 4 * place));
+  for (const auto& [rgba, place] : places)
+    std::copy(rgba.begin(), rgba.end(), texels.begin() + static_cast<std::ptrdiff_t>(first + 4 * place));
 }
 
 }  // namespace standin

@@ -1,7 +1,8 @@
 // The triangle nearest to a point: a tree of boxes, halved at the median along the longest side.
 //
 // Asked once per texel for a surface's own colour and once per original point for the distance to a coarse mesh. Long thin triangles beside
-// tiny ones are the rule in models of buildings; a uniform grid lists the former in most of its cells, which took three quarters of a LOD-sprite's bake.
+// tiny ones are the rule in models of buildings; a uniform grid lists the former in most of its cells, which took three quarters of a
+// LOD-sprite's bake.
 #pragma once
 
 #include <array>

@@ -59,8 +59,8 @@ class DepthImage {
     fit_to(surface, viewpoint);
     for (const SurfaceTriangle& triangle : surface) {
       triangles_.push_back(seen(triangle, viewpoint));
-      triangles_.back().faces = scene.materials[triangle.material].double_sided ||
-                                glm::dot(unit_normal(triangle.corners), viewpoint - triangle.corners[0]) > 0.0;
+      triangles_.back().faces =
+          scene.materials[triangle.material].double_sided || glm::dot(unit_normal(triangle.corners), viewpoint - triangle.corners[0]) > 0.0;
     }
     depth_m_.assign(std::size_t{frame_.width} * frame_.height, kInfinity);
     for (const SeenTriangle& triangle : triangles_)
@@ -71,9 +71,8 @@ class DepthImage {
     const SeenTriangle& t = triangles_[index];
     if (!t.faces) return false;
     if (is_in_front((t.texels[0] + t.texels[1] + t.texels[2]) / 3.0, depth_at(t, Vec3(1.0 / 3.0)))) return true;
-    return !for_each_texel(t.texels, frame_.width, frame_.height, [&](std::uint32_t x, std::uint32_t y, const Vec3& b) {
-      return !is_in_front(Vec2(x, y) + 0.5, depth_at(t, b));
-    });
+    return !for_each_texel(t.texels, frame_.width, frame_.height,
+                           [&](std::uint32_t x, std::uint32_t y, const Vec3& b) { return !is_in_front(Vec2(x, y) + 0.5, depth_at(t, b)); });
   }
 
  private:
@@ -118,9 +117,7 @@ class DepthImage {
     });
   }
 
-  [[nodiscard]] std::size_t at(int x, int y) const {
-    return static_cast<std::size_t>(y) * frame_.width + static_cast<std::size_t>(x);
-  }
+  [[nodiscard]] std::size_t at(int x, int y) const { return static_cast<std::size_t>(y) * frame_.width + static_cast<std::size_t>(x); }
 
   [[nodiscard]] bool is_in_front(const Vec2& texel, double depth_m) const {
     const Vec2 place = glm::clamp(glm::floor(texel), Vec2(0.0), Vec2(frame_.width - 1.0, frame_.height - 1.0));

@@ -98,7 +98,8 @@ constexpr auto kAllTechniques = {Technique::kLayered, Technique::kDepthMesh, Tec
 bool one_layer(const ToyWorld& world, const Candidate& candidate) {
   BakeQuality planar = world.quality;
   planar.max_layers = 1;
-  return plan_impostor(bounds_of(world, candidate), ObjectOutlines(world.scene).of(candidate.objects), candidate.view_cell, world.camera, planar)
+  return plan_impostor(bounds_of(world, candidate), ObjectOutlines(world.scene).of(candidate.objects), candidate.view_cell, world.camera,
+                       planar)
       .possible;
 }
 
@@ -171,7 +172,8 @@ TEST(Candidates, PlanarOnesServePartsOfWhatNeedsLayers) {
   EXPECT_TRUE(std::any_of(set.candidates.begin(), set.candidates.end(), layers_are_needed));
   std::set<std::uint32_t> served;
   for (const auto& candidate : set.candidates)
-    if (candidate.technique == Technique::kPlanar && candidate.cells.size() > 1) served.insert(candidate.cells.begin(), candidate.cells.end());
+    if (candidate.technique == Technique::kPlanar && candidate.cells.size() > 1)
+      served.insert(candidate.cells.begin(), candidate.cells.end());
   EXPECT_GE(served.size(), 4U);
 }
 

@@ -198,7 +198,8 @@ TEST(LodSprite, BacksHideNothing) {
 TEST(LodSprite, PlainTrianglesOfOneColourShareATexel) {
   test::SmallScene scene;
   for (int i = 0; i < 6; ++i)
-    scene.add_object(test::rectangle({4.0 * i, 0, 0}, {2, 0, 0}, {0, 8, 0}), coloured(i % 2 == 0 ? glm::vec4(1, 0, 0, 1) : glm::vec4(0, 0, 1, 1)));
+    scene.add_object(test::rectangle({4.0 * i, 0, 0}, {2, 0, 0}, {0, 8, 0}),
+                     coloured(i % 2 == 0 ? glm::vec4(1, 0, 0, 1) : glm::vec4(0, 0, 1, 1)));
   const Impostor impostor = baked(scene.scene, shaft_towards_z(0.2, 60.0));
   EXPECT_EQ(impostor.mesh.triangle_count(), 12U);
   ASSERT_EQ(impostor.mesh.charts.size(), 1U);
