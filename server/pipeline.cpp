@@ -66,27 +66,62 @@ Subdivision problem_views(const World& world, const TimeModel& model, double pre
                    options, budget);
 }
 
+// Meshes are sampled where a layered impostor is a candidate as well, if those are offered: the others are large, slow to bake and hardly
+// ever chosen.
+void keep_samples(Technique technique, bool beside_layers, std::vector<Candidate>& candidates) {
+  std::vector<Candidate> kept;
+  const Candidate* layered = nullptr;  // of the cluster and cells at hand: it comes first
+  for (const Candidate& candidate : candidates) {
+    if (candidate.technique == Technique::kLayered) layered = &candidate;
+    const bool has_layered = layered != nullptr && layered->node == candidate.node && layered->cells == candidate.cells;
+    if (candidate.technique == technique && (!beside_layers || !is_mesh(technique) || has_layered)) kept.push_back(candidate);
+  }
+  candidates = std::move(kept);
+}
+
+// From real bakes of the technique's own candidates. Of what else is offered, layered impostors alone decide which those are: so the law of
+// one technique is the same whatever stands beside it.
+SizeModel fit_sizes(const Surveyed& job, const Subdivision& probe, Technique technique, const JobSpec& spec, const WorkBudget& budget) {
+  const World& world = job.world;
+  SizeModels sizes;
+  for (const Technique offered : techniques_of(spec))
+    if (offered == technique || offered == Technique::kLayered) sizes.offer(offered, default_size_model(offered));
+  CandidateSet set = generate_candidates(world.scene, world.hierarchy, probe, job.target.model, sizes, world.camera, world.quality,
+                                         job.candidate_options, budget);
+  keep_samples(technique, sizes.offers(Technique::kLayered), set.candidates);
+  if (set.candidates.empty()) return default_size_model(technique);
+  return fit_size_model(world.scene, set.candidates, world.camera, world.quality, spec.size_bakes, spec.seed, world.threads, budget);
+}
+
 // What an impostor will weigh, from real bakes of this scene's own candidates (thesis 5.8.1).
 SizeModels fit_sizes(const Surveyed& job, const Subdivision& whole, const JobSpec& spec, const WorkBudget& budget) {
-  const World& world = job.world;
-  const TimeModel& model = job.target.model;
   SizeModels sizes;
-  sizes.layered = default_size_model();
-  if (spec.techniques != "layered") sizes.depth_mesh = default_size_model(Technique::kDepthMesh);
+  for (const Technique technique : techniques_of(spec)) sizes.offer(technique, default_size_model(technique));
   if (spec.size_bakes == 0) return sizes;
   constexpr double kProbeShare = 0.6;  // enough slow regions for typical candidates
-  const Subdivision probe = problem_views(world, model, kProbeShare * whole.worst_predicted_ms, budget);
-  CandidateSet set =
-      generate_candidates(world.scene, world.hierarchy, probe, model, sizes, world.camera, world.quality, job.candidate_options, budget);
-  const auto meshes = std::stable_partition(set.candidates.begin(), set.candidates.end(),
-                                            [](const Candidate& candidate) { return candidate.technique == Technique::kLayered; });
-  const auto fit = [&](auto first, auto last) {
-    const std::vector<Candidate> of_one(first, last);
-    return fit_size_model(world.scene, of_one, world.camera, world.quality, spec.size_bakes, spec.seed, world.threads, budget);
-  };
-  if (meshes != set.candidates.end()) sizes.depth_mesh = fit(meshes, set.candidates.end());
-  if (meshes != set.candidates.begin()) sizes.layered = fit(set.candidates.begin(), meshes);
+  const Subdivision probe = problem_views(job.world, job.target.model, kProbeShare * whole.worst_predicted_ms, budget);
+  for (const Technique technique : techniques_of(spec)) sizes.offer(technique, fit_sizes(job, probe, technique, spec, budget));
   return sizes;
+}
+
+json size_models_json(const SizeModels& sizes) {
+  json models = json::object();
+  for (std::size_t t = 0; t < kTechniqueCount; ++t) {
+    const auto technique = static_cast<Technique>(t);
+    if (!sizes.offers(technique)) continue;
+    const SizeModel& model = sizes.of(technique);
+    models[std::string(technique_name(technique))] = {{"bakes", model.bakes}, {"median_error", model.median_error}};
+  }
+  return models;
+}
+
+json impostor_counts(const Placement& placement) {
+  json counts = {{"count", placement.impostors.size()}, {"by_technique", json::object()}};
+  for (const auto& impostor : placement.impostors) {
+    json& count = counts["by_technique"][impostor.technique];
+    count = count.is_null() ? 1 : count.get<int>() + 1;
+  }
+  return counts;
 }
 
 // What impostors could do for the worst views; where the placement at hand has no problem view, nobody asks.
@@ -188,7 +223,7 @@ json common_metrics(const Surveyed& job, const StageClock& clock) {
             {"coverage", job.target.model.coverage},
             {"median_error", job.target.median_error},
             {"p90_error", job.target.p90_error}}},
-          {"size_model", {{"bakes", job.sizes.layered.bakes}, {"median_error", job.sizes.layered.median_error}}},
+          {"size_model", size_models_json(job.sizes)},
           {"survey", survey_json(job)},
           {"stages_s", clock.seconds()},
           {"left_out", clock.left_out()},
@@ -396,7 +431,7 @@ JobOutcome run_place(const JobFiles& files, const JobSpec& spec, const WorkBudge
                            {"duplicates", candidates.duplicates},
                            {"impossible", candidates.impossible},
                            {"hopeless", candidates.hopeless}};
-  metrics["impostors"] = {{"count", placed.placement.impostors.size()}};
+  metrics["impostors"] = impostor_counts(placed.placement);
   metrics["select"] = select_metrics(placed.selected, placed.placement);
   metrics["memory"] = memory_json(placed.placement, placed.set, std::move(gpu_compression));
   metrics["bound"] = bound_json(placed.selected.selection.summary);

@@ -5,14 +5,14 @@
 // (2x less memory for nothing, simulation.md). Candidates with the same node and cells are duplicates; hopeless ones (too many layers, no
 // gain) are dropped in O(1) from the closed-form layer count. Every (node, cell) that can gain anything also gets the shaft tight around
 // that cell alone, so that the selection can reach what reachable_times() promises. A node whose visible objects all lie in one child gets
-// none of its own: the child's is the same impostor.
+// none of its own: the child's is the same impostor. Each is offered once per technique that has something of its own to offer (draft.h);
+// planar impostors are offered for further, smaller sets of cells (planar_parts.h).
 #pragma once
 
 #include <cstdint>
-#include <optional>
-#include <string>
 #include <vector>
 
+#include "placement/candidates/size_models.h"
 #include "placement/view_space/subdivision.h"
 #include "render/impostor/bake.h"
 #include "render/scene/hierarchy.h"
@@ -27,34 +27,6 @@ struct CandidateOptions {
   bool every_direction = false;         // for tests: also asks of each cell the directions that cannot hold it
   CellShape shape = CellShape::kShaft;  // kBox: nodes of the view space grid (thesis test 13)
   int threads = 1;
-};
-
-/// exp(b0 + b1 log S + b2 log n + b3 log N + b4 (1 - 1/n) log((C + 2) / S)), with the variables of SizeInput (size_model.h); of bytes S'
-/// in the place of S.
-using SizeLaw = std::array<double, 5>;
-
-/// Memory and drawing cost from a sketch (layers, texture size, what is in it), fitted on real bakes: the paper's heuristic (5.8.1), ours
-/// in log space.
-struct SizeModel {
-  SizeLaw log_bytes{};
-  SizeLaw log_texels{};  // drawn, without gutters
-  SizeLaw log_quads{};
-  // What bakes exceed their estimates by at most, in 9 of 10 cases, >= 1. Bytes are what is minimised and stay unbiased; the drawing cost
-  // is a promise to every region an impostor serves, and a little caution there costs next to nothing.
-  double texels_margin = 1.0;
-  double quads_margin = 1.0;
-  double median_error = 0.0;  // held out, relative, of bytes
-  std::uint32_t bakes = 0;
-};
-
-/// Per technique. What a layered impostor can stand for may be offered as a depth mesh as well.
-struct SizeModels {
-  SizeModels() = default;
-  SizeModels(const SizeModel& of_layered) : layered(of_layered) {}  // NOLINT: the layered technique alone is the plain case
-  SizeModel layered;
-  std::optional<SizeModel> depth_mesh;  // nothing: not offered
-
-  [[nodiscard]] const SizeModel& of(Technique technique) const { return technique == Technique::kDepthMesh ? *depth_mesh : layered; }
 };
 
 struct Candidate {
@@ -87,8 +59,8 @@ struct CandidateSet {
 [[nodiscard]] SizeModel default_size_model(Technique technique = Technique::kLayered);
 
 /// Lowest predicted time each CPV can be brought to by any disjoint candidates (tree DP: V(node) = max(best own gain, sum of V(children))),
-/// each candidate layered and a shaft tight around the CPV's own cell. One value per CPV; `blockers` names the objects that make up most of what is
-/// left.
+/// each candidate of whichever offered technique gains most, in a shaft tight around the CPV's own cell. One value per CPV; `blockers`
+/// names the objects that make up most of what is left.
 struct Reach {
   std::vector<double> predicted_ms;                  // per CPV
   std::vector<std::vector<std::uint32_t>> blockers;  // per CPV, at most 5 objects, largest first

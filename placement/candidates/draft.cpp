@@ -40,6 +40,62 @@ bool can_be_baked(const DraftContext& context, const Box& object_bounds, std::sp
          plan_impostor(object_bounds, points, view_cell, context.camera, context.quality).possible;
 }
 
+/// What all techniques share of a candidate.
+struct Cluster {
+  std::vector<std::uint32_t> objects;
+  Box bounds;
+  std::vector<Vec3> points;
+  ViewCell view_cell;
+  ImpostorSketch sketch;
+};
+
+std::optional<Cluster> cluster_seen_from(const DraftContext& context, std::uint32_t node, const CellSet& cells) {
+  Cluster cluster;
+  cluster.objects = visible_objects(context, node, cells);
+  for (const std::uint32_t object : cluster.objects) cluster.bounds.extend(context.scene.objects[object].bounds);
+  const auto view_cell = view_cell_around(context, cluster.bounds, cells);
+  if (!view_cell) return std::nullopt;
+  cluster.view_cell = *view_cell;
+  cluster.points = context.outlines.of(cluster.objects);
+  cluster.sketch = sketch_impostor(cluster.bounds, cluster.points, *view_cell, context.camera, context.quality);
+  if (!can_be_baked(context, cluster.bounds, cluster.points, *view_cell, cluster.sketch)) return std::nullopt;
+  return cluster;
+}
+
+/// By the full plan, since the sketch does not tell one layer from two.
+bool one_layer_is_enough(const DraftContext& context, const Cluster& cluster) {
+  constexpr double kSurelyMore = 4.0;
+  if (cluster.sketch.layers > kSurelyMore) return false;
+  BakeQuality planar = context.quality;
+  planar.max_layers = 1;
+  return plan_impostor(cluster.bounds, cluster.points, cluster.view_cell, context.camera, planar).possible;
+}
+
+bool has_masked_surfaces(const Scene& scene, std::span<const std::uint32_t> objects) {
+  const auto masked = [&](const Part& part) { return scene.materials[part.material].alpha_mode == AlphaMode::kMask; };
+  return std::any_of(objects.begin(), objects.end(), [&](std::uint32_t id) {
+    const Object& object = scene.objects[id];
+    return std::ranges::any_of(std::span(scene.parts).subspan(object.first_part, object.part_count), masked);
+  });
+}
+
+/// See draft.h.
+bool has_its_own_to_offer(const DraftContext& context, const Cluster& cluster, Technique technique) {
+  constexpr double kSomeDepth = 1.5;  // layers, as sketched
+  const bool layered_too = context.sizes.offers(Technique::kLayered);
+  switch (technique) {
+    case Technique::kPlanar:
+      return !layered_too && one_layer_is_enough(context, cluster);
+    case Technique::kDepthMesh:
+      return !layered_too || cluster.sketch.layers > kSomeDepth;
+    case Technique::kLodSprite:
+      return (!layered_too || cluster.sketch.layers > kSomeDepth) && !has_masked_surfaces(context.scene, cluster.objects);
+    case Technique::kLayered:
+      break;
+  }
+  return true;
+}
+
 /// Bytes and drawing cost by the technique's size model.
 void weigh(const DraftContext& context, Draft& draft) {
   const SizeModel& sizes = context.sizes.of(draft.candidate.technique);
@@ -53,32 +109,37 @@ void weigh(const DraftContext& context, Draft& draft) {
   draft.cost = context.model.cost(impostor_features_bound(cautious, context.camera));
 }
 
-}  // namespace
-
-std::optional<Draft> draft_candidate(const DraftContext& context, std::uint32_t node, const CellSet& cells) {
-  std::vector<std::uint32_t> objects = visible_objects(context, node, cells);
-  Box bounds;
-  for (const std::uint32_t object : objects) bounds.extend(context.scene.objects[object].bounds);
-  const auto view_cell = view_cell_around(context, bounds, cells);
-  if (!view_cell) return std::nullopt;
-  const std::vector<Vec3> points = context.outlines.of(objects);
-  const ImpostorSketch sketch = sketch_impostor(bounds, points, *view_cell, context.camera, context.quality);
-  if (!can_be_baked(context, bounds, points, *view_cell, sketch)) return std::nullopt;
-
-  Draft draft{{node, *view_cell, cells, std::move(objects), 0.0, {}, Technique::kLayered}, {}, {}};
-  draft.input = size_input(context.scene, context.outlines, draft.candidate.objects, sketch);
+Draft draft_of(const DraftContext& context, std::uint32_t node, const CellSet& cells, const Cluster& cluster, Technique technique) {
+  Draft draft{{node, cluster.view_cell, cells, cluster.objects, 0.0, {}, technique}, {}, {}};
+  draft.input = size_input(context.scene, context.outlines, cluster.objects, cluster.sketch);
   weigh(context, draft);
   return draft;
 }
 
-std::optional<Draft> as_depth_mesh(const DraftContext& context, const Draft& layered) {
-  if (!context.sizes.depth_mesh || !(layered.input.layers > 1.5)) return std::nullopt;
-  Draft draft = layered;
-  draft.candidate.technique = Technique::kDepthMesh;
-  weigh(context, draft);
-  const bool faster = draft.cost.fixed_ms < layered.cost.fixed_ms;
-  if (draft.candidate.bytes >= layered.candidate.bytes && !faster) return std::nullopt;
-  return draft;
+bool beats(const Draft& known, const Draft& draft) {
+  return known.candidate.bytes <= draft.candidate.bytes && known.cost.fixed_ms <= draft.cost.fixed_ms;
+}
+
+}  // namespace
+
+std::vector<Draft> draft_candidates(const DraftContext& context, std::uint32_t node, const CellSet& cells) {
+  std::vector<Draft> drafts;
+  const auto cluster = cluster_seen_from(context, node, cells);
+  if (!cluster) return drafts;
+  for (std::size_t i = 0; i < kTechniqueCount; ++i) {
+    const auto technique = static_cast<Technique>(i);
+    if (!context.sizes.offers(technique) || !has_its_own_to_offer(context, *cluster, technique)) continue;
+    Draft draft = draft_of(context, node, cells, *cluster, technique);
+    const bool beaten = std::any_of(drafts.begin(), drafts.end(), [&](const Draft& known) { return beats(known, draft); });
+    if (!beaten) drafts.push_back(std::move(draft));
+  }
+  return drafts;
+}
+
+std::optional<Draft> draft_planar(const DraftContext& context, std::uint32_t node, const CellSet& cells) {
+  const auto cluster = cluster_seen_from(context, node, cells);
+  if (!cluster || !one_layer_is_enough(context, *cluster)) return std::nullopt;
+  return draft_of(context, node, cells, *cluster, Technique::kPlanar);
 }
 
 bool belongs_to_child(const DraftContext& context, std::uint32_t node, const CellSet& cells) {

@@ -3,6 +3,10 @@
 // The impostor stands for the node's objects that are visible from a served cell, no others: what is never seen needs no texels. Its shaft
 // starts at their centre and is tight around the cells (tight_shaft.h). A candidate and the reachable times come from the same draft, so
 // what reachable_times() promises is what generate_candidates() offers.
+//
+// The same cluster and view cell is offered once per technique that has something of its own to offer. Where one layer is enough, meshes
+// are that layer's quads, and a planar impostor is the layered one: they are drafted there only if layered impostors are not. Where more
+// are needed a planar one is impossible. What an earlier technique of the enumeration beats in bytes and in fixed cost is left out.
 #pragma once
 
 #include <optional>
@@ -40,12 +44,12 @@ struct Draft {
   return cpv.pixels_capped ? cost.fixed_ms : cost.fixed_ms + cost.pixel_ms;
 }
 
-/// `cells`: ascending, at least one, each sees some object of the node. Nothing when no impostor is possible.
-[[nodiscard]] std::optional<Draft> draft_candidate(const DraftContext& context, std::uint32_t node, const CellSet& cells);
+/// By technique, in the order of the enumeration. `cells`: ascending, at least one, each sees some object of the node. Empty when no
+/// impostor is possible.
+[[nodiscard]] std::vector<Draft> draft_candidates(const DraftContext& context, std::uint32_t node, const CellSet& cells);
 
-/// The same cluster and view cell as a depth mesh. Nothing where none is offered, where one layer is enough, or where it would be neither
-/// smaller nor faster to draw.
-[[nodiscard]] std::optional<Draft> as_depth_mesh(const DraftContext& context, const Draft& layered);
+/// A planar one, beside whatever else is offered. Nothing where one layer is not enough.
+[[nodiscard]] std::optional<Draft> draft_planar(const DraftContext& context, std::uint32_t node, const CellSet& cells);
 
 /// Whether all objects visible from the cells lie in one child of the node: then the child's candidate is the same.
 [[nodiscard]] bool belongs_to_child(const DraftContext& context, std::uint32_t node, const CellSet& cells);

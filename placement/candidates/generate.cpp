@@ -1,8 +1,9 @@
 // Candidates of every node, node by node and independent of each other.
 #include <algorithm>
 #include <iterator>
+#include <set>
 
-#include "placement/candidates/draft.h"
+#include "placement/candidates/planar_parts.h"
 #include "render/base/parallel.h"
 
 namespace standin {
@@ -12,6 +13,7 @@ namespace {
 struct UsefulCell {
   std::uint32_t cell = 0;
   std::vector<double> terms_ms;  // of the node's objects, per CPV of the cell
+  bool for_layers = false;       // a layered one is
 };
 
 class NodeCandidates {
@@ -21,8 +23,11 @@ class NodeCandidates {
   CandidateSet generate(const DirectionGrid& grid, int leaf_level, const CandidateOptions& options) {
     serve_single_cells();
     const bool boxes = options.shape == CellShape::kBox;
-    serve_cubes(boxes ? 0 : leaf_level);
-    if (!boxes) serve_pyramids(grid, leaf_level, options.apex_deg);
+    for (const CellSet& cells : cells_to_serve()) {
+      serve_cubes(cells, boxes ? 0 : leaf_level);
+      if (!boxes) serve_pyramids(cells, grid, leaf_level, options.apex_deg);
+    }
+    if (context_.sizes.offers(Technique::kPlanar)) serve_planar_parts();
     return std::move(set_);
   }
 
@@ -30,39 +35,43 @@ class NodeCandidates {
   // A larger view cell around one of these costs more than the tight one: cells that fail here serve in no set.
   void serve_single_cells() {
     for (const std::uint32_t cell : context_.index.cells_seeing(node_)) {
-      ++set_.generated;
-      auto draft = draft_candidate(context_, node_, {cell});
-      if (!draft) {
+      auto drafts = draft_candidates(context_, node_, {cell});
+      set_.generated += std::max<std::size_t>(drafts.size(), 1);
+      if (drafts.empty()) {
         ++set_.impossible;
         continue;
       }
-      UsefulCell useful{cell, {}};
+      UsefulCell useful{cell, {}, false};
       const IdRange cpvs = context_.index.cpvs(cell);
       for (std::uint32_t p = cpvs.begin; p < cpvs.end; ++p)
         useful.terms_ms.push_back(context_.index.terms_ms(context_.subdivision.cpvs[p], node_));
-      if (!gains(useful, draft->cost)) {
-        ++set_.hopeless;
-        continue;
-      }
+      set_.hopeless += std::erase_if(drafts, [&](const Draft& draft) { return !gains(useful, draft.cost); });
+      if (drafts.empty()) continue;
+      useful.for_layers = drafts.front().candidate.technique == Technique::kLayered;
       useful_.push_back(std::move(useful));
-      keep(std::move(*draft));
+      keep(std::move(drafts));
     }
   }
 
-  void serve_cubes(int coarsest_level) {
-    for (const CellSet& cells : distinct(box_cell_sets(useful_cells(), context_.subdivision, coarsest_level))) serve(cells);
+  void serve_cubes(const CellSet& useful, int coarsest_level) {
+    for (const CellSet& cells : distinct(box_cell_sets(useful, context_.subdivision, coarsest_level))) serve(cells);
   }
 
-  void serve_pyramids(const DirectionGrid& grid, int leaf_level, std::span<const double> apex_deg) {
-    const auto groups = group_cells(useful_cells(), context_.subdivision, leaf_level);
+  void serve_pyramids(const CellSet& useful, const DirectionGrid& grid, int leaf_level, std::span<const double> apex_deg) {
+    const auto groups = group_cells(useful, context_.subdivision, leaf_level);
     for (const GroupSet& set : distinct(shaft_group_sets(context_.hierarchy.nodes[node_].bounds, groups, grid, apex_deg)))
       serve(cells_of(set, groups));
   }
 
-  [[nodiscard]] CellSet useful_cells() const {
-    CellSet cells;
-    for (const UsefulCell& useful : useful_) cells.push_back(useful.cell);
-    return cells;
+  /// Those that a layered impostor is useful for, and all: further techniques add sets and take none away.
+  [[nodiscard]] std::vector<CellSet> cells_to_serve() const {
+    CellSet for_layers, all;
+    for (const UsefulCell& useful : useful_) {
+      all.push_back(useful.cell);
+      if (useful.for_layers) for_layers.push_back(useful.cell);
+    }
+    if (for_layers == all || for_layers.empty()) return {all};
+    return {for_layers, all};
   }
 
   template <class Set>
@@ -76,28 +85,63 @@ class NodeCandidates {
   }
 
   void serve(const CellSet& cells) {
-    auto draft = draft_candidate(context_, node_, cells);
-    if (!draft)
-      ++set_.impossible;
-    else if (!gains_anywhere(cells, draft->cost))
-      ++set_.hopeless;
-    else
-      keep(std::move(*draft));
-  }
-
-  void keep(Draft layered) {
-    if (belongs_to_child(context_, node_, layered.candidate.cells)) {
+    if (offers_more_than_layers() && !served_.insert(cells).second) {
       ++set_.duplicates;
       return;
     }
-    std::optional<Draft> mesh = as_depth_mesh(context_, layered);
-    set_.candidates.push_back(std::move(layered.candidate));
-    if (!mesh) return;
-    ++set_.generated;
-    if (gains_anywhere(mesh->candidate.cells, mesh->cost))
-      set_.candidates.push_back(std::move(mesh->candidate));
+    auto drafts = draft_candidates(context_, node_, cells);
+    if (drafts.empty())
+      ++set_.impossible;
     else
+      set_.generated += drafts.size() - 1;  // the set itself is counted
+    set_.hopeless += std::erase_if(drafts, [&](const Draft& draft) { return !gains_anywhere(cells, draft.cost); });
+    keep(std::move(drafts));
+  }
+
+  /// Of all sets served so far that one layer is not enough for.
+  void serve_planar_parts() {
+    const std::set<CellSet> whole = served_;
+    for (const UsefulCell& useful : useful_) served_.insert({useful.cell});
+    for (const CellSet& cells : whole)
+      if (!draft_planar(context_, node_, cells)) serve_halves(cells, 1);
+  }
+
+  void serve_halves(const CellSet& cells, int depth) {
+    constexpr int kMostHalvings = 4;
+    const auto halves = halved_across(context_, node_, cells);
+    if (halves.second.empty()) return;
+    for (const CellSet* half : {&halves.first, &halves.second}) {
+      if (!served_.insert(*half).second) continue;  // it was offered as whatever it needs, and is halved in its own turn
+      ++set_.generated;
+      if (auto draft = draft_planar(context_, node_, *half)) {
+        serve_part(std::move(*draft));
+        continue;
+      }
+      ++set_.impossible;
+      if (depth < kMostHalvings && half->size() > 1) serve_halves(*half, depth + 1);
+    }
+  }
+
+  void serve_part(Draft planar) {
+    if (!gains_anywhere(planar.candidate.cells, planar.cost))
       ++set_.hopeless;
+    else
+      keep({std::move(planar)});
+  }
+
+  /// All of one cluster and view cell.
+  void keep(std::vector<Draft> drafts) {
+    if (drafts.empty()) return;
+    if (belongs_to_child(context_, node_, drafts.front().candidate.cells)) {
+      set_.duplicates += drafts.size();
+      return;
+    }
+    for (Draft& draft : drafts) set_.candidates.push_back(std::move(draft.candidate));
+  }
+
+  [[nodiscard]] bool offers_more_than_layers() const {
+    const auto offered = [&](Technique technique) { return context_.sizes.offers(technique); };
+    return offered(Technique::kDepthMesh) || offered(Technique::kPlanar) || offered(Technique::kLodSprite);
   }
 
   [[nodiscard]] bool gains(const UsefulCell& useful, const Cost& cost) const {
@@ -119,6 +163,7 @@ class NodeCandidates {
   const DraftContext& context_;
   std::uint32_t node_;
   std::vector<UsefulCell> useful_;  // ascending cells
+  std::set<CellSet> served_;        // of two or more cells; not kept where layered impostors alone are offered
   CandidateSet set_;
 };
 

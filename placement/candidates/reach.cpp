@@ -2,6 +2,7 @@
 //
 // Per cell, each visible cluster's tight impostor is drafted once; per CPV, V(node) = max(own gain, V(left) + V(right)) from the leaves up.
 #include <algorithm>
+#include <limits>
 
 #include "placement/candidates/draft.h"
 #include "render/base/parallel.h"
@@ -14,18 +15,17 @@ constexpr std::size_t kBlockers = 5;
 /// A cluster as one cell sees it. Children come after their parents.
 struct SeenNode {
   std::uint32_t node = 0;
-  bool possible = false;
-  Cost cost;           // of its tight impostor
-  double value = 0.0;  // V(node) in the CPV at hand
-  bool own = false;    // its impostor is what reaches V
+  std::vector<Cost> costs;  // of its tight impostors, by technique
+  double value = 0.0;       // V(node) in the CPV at hand
+  bool own = false;         // its impostor is what reaches V
 };
 
 class CellReach {
  public:
   CellReach(const DraftContext& context, std::uint32_t cell) : context_(context) {
     for (const std::uint32_t node : seen_nodes(cell)) {
-      const auto draft = draft_candidate(context, node, {cell});
-      nodes_.push_back({node, draft.has_value(), draft ? draft->cost : Cost{}});
+      nodes_.push_back({node, {}});
+      for (const Draft& draft : draft_candidates(context, node, {cell})) nodes_.back().costs.push_back(draft.cost);
     }
   }
 
@@ -35,7 +35,7 @@ class CellReach {
       SeenNode& seen = nodes_[i];
       const HierarchyNode& node = context_.hierarchy.nodes[seen.node];
       const double children_ms = value_of(node.left) + value_of(node.right);
-      const double own_ms = seen.possible ? context_.index.terms_ms(cpv, seen.node) - in_form(seen.cost, cpv) : 0.0;
+      const double own_ms = own_gain_ms(seen, cpv);
       seen.own = own_ms > children_ms;
       seen.value = seen.own ? own_ms : children_ms;
     }
@@ -56,6 +56,14 @@ class CellReach {
   }
 
  private:
+  /// Of the technique that gains most; 0 where none is possible.
+  [[nodiscard]] double own_gain_ms(const SeenNode& seen, const Cpv& cpv) const {
+    if (seen.costs.empty()) return 0.0;
+    double least_ms = std::numeric_limits<double>::infinity();
+    for (const Cost& cost : seen.costs) least_ms = std::min(least_ms, in_form(cost, cpv));
+    return context_.index.terms_ms(cpv, seen.node) - least_ms;
+  }
+
   /// Nodes with a visible object, ascending (parents first).
   [[nodiscard]] std::vector<std::uint32_t> seen_nodes(std::uint32_t cell) const {
     std::vector<std::uint32_t> nodes;

@@ -215,6 +215,12 @@ SizeEstimate estimate_size(const SizeModel& model, const SizeInput& input) {
 // has the commands). Bytes are 4 S' and drawn texels S, in one layer.
 SizeModel default_size_model(Technique technique) {
   SizeModel model;
+  if (technique == Technique::kLodSprite) {
+    model.log_bytes = {1.677, 1.123, 0.363, -0.164, 0.058};
+    model.log_texels = {0.379, 1.052, 0.492, -0.206, 0.136};
+    model.log_quads = {0.335, 0.285, 0.437, 0.212, 0.215};
+    return model;
+  }
   if (technique == Technique::kDepthMesh) {
     // Its size follows the silhouette; layers matter little.
     model.log_bytes = {1.8, 1.0, 0.3, 0.0, 0.2};

@@ -8,6 +8,8 @@
 #include "render/impostor/slab_piece.h"
 #include "render/impostor/sprite_colours.h"
 #include "render/impostor/sprite_mesh.h"
+#include "render/impostor/sprite_palette.h"
+#include "render/impostor/visible_surface.h"
 
 namespace standin {
 namespace {
@@ -42,6 +44,24 @@ double nearest_m(const std::vector<SurfaceTriangle>& surface, std::span<const Ve
   return nearest;
 }
 
+/// The triangles that have no colour of their own in the palette.
+SpriteMesh charted(const SpriteMesh& mesh, std::span<const PlainColour> plain) {
+  SpriteMesh rest{mesh.vertices, {}};
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    if (!plain[t]) rest.triangles.push_back(mesh.triangles[t]);
+  return rest;
+}
+
+void texture(const SpriteMesh& mesh, const ImpostorFrame& frame, double near_m, const SampleColour& colour, const WorkBudget& budget,
+             Impostor& impostor) {
+  const std::vector<PlainColour> plain = plain_colours(mesh, on_lattice(mesh, frame, near_m), colour, budget);
+  append_palette(mesh, plain, impostor.mesh, impostor.texels);
+  for (const ChartDraft& draft : charts_of(on_lattice(charted(mesh, plain), frame, near_m), 1.0, kMaxChartSide)) {
+    budget.check();
+    append_chart(draft, mesh.vertices, colour, impostor.mesh, impostor.texels);
+  }
+}
+
 }  // namespace
 
 Impostor bake_lod_sprite(const Scene& scene, const TexturePyramids& textures, const BakeRequest& request, const Camera& camera,
@@ -49,7 +69,8 @@ Impostor bake_lod_sprite(const Scene& scene, const TexturePyramids& textures, co
   const ImpostorPlan plan = plan_request(scene, request, camera, quality);
   const ImpostorFrame& frame = plan.frame;
   Impostor impostor{request.objects, request.view_cell, frame, plan.layers, {}, {}, {}, Technique::kLodSprite};
-  const std::vector<SurfaceTriangle> surface = cluster_surface(scene, request, frame.reference_viewpoint);
+  const std::vector<SurfaceTriangle> surface =
+      visible_surface(scene, cluster_surface(scene, request, frame.reference_viewpoint), request.view_cell, frame, budget);
   std::vector<Vec3> viewpoints = corner_viewpoints(request.view_cell, frame.reference_viewpoint);
   viewpoints.emplace_back(0.0);
   const double alpha_rad = quality.alpha_scale * camera.pixel_angle_rad();
@@ -59,10 +80,7 @@ Impostor bake_lod_sprite(const Scene& scene, const TexturePyramids& textures, co
   const auto images = record_layers(scene, textures, request.objects, frame, {&layer, 1}, Coverage::kClosed, budget);
   const SpriteColours colours(scene, textures, surface, frame, images.front(), layer, viewpoints, alpha_rad);
   const SampleColour colour = [&](const SurfaceSample& sample) { return colours.at(sample.offset, sample.normal); };
-  for (const ChartDraft& draft : charts_of(on_lattice(mesh, frame, layer.near_m), 1.0, kMaxChartSide)) {
-    budget.check();
-    append_chart(draft, mesh.vertices, colour, impostor.mesh, impostor.texels);
-  }
+  texture(mesh, frame, layer.near_m, colour, budget, impostor);
   return impostor;
 }
 

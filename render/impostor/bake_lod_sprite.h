@@ -3,8 +3,9 @@
 // The paper draws the scene once, textures a low-resolution model with that image by projective texture mapping and goes on with it until
 // the error criterion (1) fails. A baked impostor cannot be drawn again when it fails, so the criterion is asked beforehand, from all
 // corners of the view cell: it decides how coarse the mesh may be (sprite_mesh.h). And a static file has no projective texturing: the image
-// is resampled to charts in object space, one texel a pixel of the reference viewpoint (chart_texels.h), which any viewer shows right.
-// Triangles that no one in the view cell can face are dropped; what the reference viewpoint does not see has its own surface's colour
+// is resampled to charts in object space, one texel a pixel of the reference viewpoint (chart_texels.h), which any viewer shows right;
+// plain triangles share a palette (sprite_palette.h). Triangles that no one in the view cell can face are dropped, and those that nobody
+// is found to see (visible_surface.h); what the reference viewpoint does not see has its own surface's colour
 // (sprite_colours.h).
 //
 // Nothing is promised (guarantee "none"). What is judged, original vertices and triangle centres, appears within alpha of its place from

@@ -39,7 +39,7 @@ SpriteColours::SpriteColours(const Scene& scene, const TexturePyramids& textures
       layer_(layer),
       viewpoints_(viewpoints),
       alpha_rad_(alpha_rad),
-      grid_(corners_of(surface)) {}
+      tree_(corners_of(surface)) {}
 
 std::array<std::uint8_t, 4> SpriteColours::at(const Vec3& offset, const Vec3& normal) const {
   const auto projected = of_image(offset, normal);
@@ -54,7 +54,7 @@ std::optional<std::array<std::uint8_t, 4>> SpriteColours::of_image(const Vec3& o
   const RecordedTexel& shown = image_.get(static_cast<std::uint32_t>(texel.x), static_cast<std::uint32_t>(texel.y));
   if (!shown.opaque()) return std::nullopt;
   const Vec3 shown_point = depth_m(shown, layer_) / depth * offset;
-  if (!(apparent_angle(viewpoints_, shown_point, offset) < alpha_rad_)) return std::nullopt;
+  if (!appears_within(viewpoints_, shown_point, offset, alpha_rad_)) return std::nullopt;
   return shown.rgba;
 }
 
@@ -64,7 +64,7 @@ std::array<std::uint8_t, 4> SpriteColours::of_surface(const Vec3& offset, const 
   const auto penalty = [&](std::uint32_t t) {
     return 2.0 * texel_m * (1.0 - std::abs(glm::dot(normal, unit_normal(surface_[t].corners))));
   };
-  const auto nearest = grid_.nearest(offset, std::numeric_limits<double>::infinity(), penalty);
+  const auto nearest = tree_.nearest(offset, std::numeric_limits<double>::infinity(), penalty);
   const SurfaceTriangle& triangle = surface_[nearest->triangle];
   const TexturePyramid* texture = triangle.textured ? textures_.of_material(triangle.material) : nullptr;
   const double level = texture != nullptr ? level_of(triangle, *texture, texel_m) : 0.0;

@@ -34,7 +34,7 @@ class SpriteColours {
   const Layer& layer_;
   std::span<const Vec3> viewpoints_;
   double alpha_rad_;
-  TriangleGrid grid_;
+  TriangleTree tree_;
 };
 
 }  // namespace standin

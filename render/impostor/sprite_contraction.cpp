@@ -34,11 +34,11 @@ class Contraction {
         points_of_(mesh.triangles.size()) {
     for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
       for (const std::uint32_t v : mesh.triangles[t]) of_vertex_[v].push_back(t);
-    const TriangleGrid grid(corners_of(mesh));
+    const TriangleTree tree(corners_of(mesh));
     for (const Vec3& point : points) {
       double nearest_m = std::numeric_limits<double>::infinity();
       for (const Vec3& viewpoint : viewpoints) nearest_m = std::min(nearest_m, glm::length(point - viewpoint));
-      const auto own = grid.nearest(point, std::numeric_limits<double>::infinity());
+      const auto own = tree.nearest(point, std::numeric_limits<double>::infinity());
       points_of_[own->triangle].push_back(static_cast<std::uint32_t>(points_.size()));
       points_.push_back({point, 0.99 * std::sin(std::min(alpha_rad, 1.5)) * nearest_m});
     }
@@ -62,10 +62,10 @@ class Contraction {
     for (std::uint32_t t = 0; t < part_of.size(); ++t)
       if (alive_[t] != 0) members[part_of[t]].push_back(t);
     std::stable_sort(members.begin(), members.end(), [](const auto& a, const auto& b) { return a.size() < b.size(); });
-    const TriangleGrid grid(corners_of(mesh_));
+    const TriangleTree tree(corners_of(mesh_));
     for (const auto& part : members) {
       budget.check();
-      if (!part.empty() && find_places_elsewhere(part, part_of, grid)) carry_over(part);
+      if (!part.empty() && find_places_elsewhere(part, part_of, tree)) carry_over(part);
     }
   }
 
@@ -115,15 +115,15 @@ class Contraction {
   }
 
   /// A triangle of another part for each point that this one shows.
-  bool find_places_elsewhere(const std::vector<std::uint32_t>& part, const std::vector<std::uint32_t>& part_of, const TriangleGrid& grid) {
+  bool find_places_elsewhere(const std::vector<std::uint32_t>& part, const std::vector<std::uint32_t>& part_of, const TriangleTree& tree) {
     constexpr double kNever = std::numeric_limits<double>::infinity();
     const auto penalty = [&](std::uint32_t t) { return alive_[t] == 0 || part_of[t] == part_of[part.front()] ? kNever : 0.0; };
     moved_.clear();
     for (const std::uint32_t t : part)
       for (const std::uint32_t point : points_of_[t]) {
         const JudgedPoint& judged = points_[point];
-        const auto nearest = grid.nearest(judged.place, 2.0 * judged.surely_within_m, penalty);
-        if (!nearest || !(apparent_angle(viewpoints_, judged.place, nearest->point) < kOffRayShare * alpha_rad_)) return false;
+        const auto nearest = tree.nearest(judged.place, 2.0 * judged.surely_within_m, penalty);
+        if (!nearest || !appears_within(viewpoints_, judged.place, nearest->point, kOffRayShare * alpha_rad_)) return false;
         moved_.emplace_back(point, nearest->triangle);
       }
     return true;
@@ -196,7 +196,7 @@ class Contraction {
       const Vec3 at = point_at(candidate.corners, nearest_barycentric(candidate.corners, point.place));
       const double distance = glm::length(at - point.place);
       if (distance < kOffRayShare * point.surely_within_m) return candidate.triangle;
-      if (distance < least && apparent_angle(viewpoints_, point.place, at) < kOffRayShare * alpha_rad_) {
+      if (distance < least && appears_within(viewpoints_, point.place, at, kOffRayShare * alpha_rad_)) {
         least = distance;
         nearest = &candidate;
       }
@@ -204,7 +204,7 @@ class Contraction {
     if (nearest != nullptr) return nearest->triangle;
     for (const NewTriangle& candidate : ring_)
       if (const auto share = ray_meets(candidate.corners, point.place);
-          share && apparent_angle(viewpoints_, point.place, *share * point.place) < alpha_rad_)
+          share && appears_within(viewpoints_, point.place, *share * point.place, alpha_rad_))
         return candidate.triangle;
     return std::nullopt;
   }

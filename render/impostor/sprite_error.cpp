@@ -31,8 +31,17 @@ double apparent_angle(std::span<const Vec3> viewpoints, const Vec3& a, const Vec
   return worst;
 }
 
+bool appears_within(std::span<const Vec3> viewpoints, const Vec3& a, const Vec3& b, double limit_rad) {
+  const double tangent = std::tan(std::min(limit_rad, 1.5));
+  return std::all_of(viewpoints.begin(), viewpoints.end(), [&](const Vec3& viewpoint) {
+    const double along = glm::dot(a - viewpoint, b - viewpoint);
+    const Vec3 across = glm::cross(a - viewpoint, b - a);
+    return along > 0.0 && glm::dot(across, across) < tangent * tangent * along * along;
+  });
+}
+
 SpriteError::SpriteError(std::vector<std::array<Vec3, 3>> coarse, const Vec3& forward, std::span<const Vec3> viewpoints)
-    : coarse_(std::move(coarse)), grid_(coarse_), forward_(forward), viewpoints_(viewpoints), bins_(std::size_t{kBins} * kBins) {
+    : coarse_(std::move(coarse)), tree_(coarse_), forward_(forward), viewpoints_(viewpoints), bins_(std::size_t{kBins} * kBins) {
   const Shaft axes = shaft_frame(Vec3(0.0), -forward);
   right_ = axes.right;
   up_ = axes.up;
@@ -63,17 +72,18 @@ bool SpriteError::within(std::span<const Vec3> points, double limit_rad) const {
 bool SpriteError::is_within(const Vec3& point, double limit_rad) const {
   double nearest_viewer_m = std::numeric_limits<double>::infinity();
   for (const Vec3& viewpoint : viewpoints_) nearest_viewer_m = std::min(nearest_viewer_m, glm::length(point - viewpoint));
-  const auto nearest = grid_.nearest(point, 2.0 * limit_rad * nearest_viewer_m);  // farther, it may be right along the ray alone
-  if (nearest && apparent_angle(viewpoints_, point, nearest->point) < limit_rad) return true;
-  return error_along_ray(point) < limit_rad;
+  const auto nearest = tree_.nearest(point, 2.0 * limit_rad * nearest_viewer_m);  // farther, it may be right along the ray alone
+  if (nearest && appears_within(viewpoints_, point, nearest->point, limit_rad)) return true;
+  return is_within_along_ray(point, limit_rad);
 }
 
-double SpriteError::error_along_ray(const Vec3& point) const {
+bool SpriteError::is_within_along_ray(const Vec3& point, double limit_rad) const {
   const auto bin = bin_of(slope(point));
-  double least = std::numeric_limits<double>::infinity();
-  for (const std::uint32_t i : bins_[static_cast<std::size_t>(bin[1] * kBins + bin[0])])
-    if (const auto share = ray_meets(coarse_[i], point)) least = std::min(least, apparent_angle(viewpoints_, point, *share * point));
-  return least;
+  const auto& candidates = bins_[static_cast<std::size_t>(bin[1] * kBins + bin[0])];
+  return std::any_of(candidates.begin(), candidates.end(), [&](std::uint32_t i) {
+    const auto share = ray_meets(coarse_[i], point);
+    return share && appears_within(viewpoints_, point, *share * point, limit_rad);
+  });
 }
 
 }  // namespace standin

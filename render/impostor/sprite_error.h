@@ -8,7 +8,7 @@
 
 #include <span>
 
-#include "render/impostor/triangle_grid.h"
+#include "render/impostor/triangle_tree.h"
 
 namespace standin {
 
@@ -16,6 +16,9 @@ namespace standin {
 [[nodiscard]] double apparent_angle(const Vec3& viewpoint, const Vec3& a, const Vec3& b);
 /// The largest from any of the viewpoints.
 [[nodiscard]] double apparent_angle(std::span<const Vec3> viewpoints, const Vec3& a, const Vec3& b);
+
+/// Whether the largest is below `limit_rad` (1.5 at most), as most callers ask: without an arc tangent.
+[[nodiscard]] bool appears_within(std::span<const Vec3> viewpoints, const Vec3& a, const Vec3& b, double limit_rad);
 
 /// Where the ray from the origin through `point` meets the triangle, as a multiple of `point`.
 [[nodiscard]] std::optional<double> ray_meets(const std::array<Vec3, 3>& triangle, const Vec3& point);
@@ -30,14 +33,14 @@ class SpriteError {
 
  private:
   [[nodiscard]] bool is_within(const Vec3& point, double limit_rad) const;
-  [[nodiscard]] double error_along_ray(const Vec3& point) const;
+  [[nodiscard]] bool is_within_along_ray(const Vec3& point, double limit_rad) const;
   [[nodiscard]] Vec2 slope(const Vec3& point) const {
     return Vec2(glm::dot(point, right_), glm::dot(point, up_)) / glm::dot(point, forward_);
   }
   [[nodiscard]] std::array<int, 2> bin_of(const Vec2& slope) const;
 
   std::vector<std::array<Vec3, 3>> coarse_;
-  TriangleGrid grid_;
+  TriangleTree tree_;
   Vec3 forward_, right_, up_;
   std::span<const Vec3> viewpoints_;
   Vec2 low_{std::numeric_limits<double>::infinity()};  // slopes of the mesh

@@ -1,8 +1,11 @@
 #include "server/job/job_spec.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <sstream>
 
 #include "render/base/error.h"
 
@@ -55,6 +58,13 @@ json above(double limit, double most = std::numeric_limits<double>::infinity()) 
 }
 json one_of(std::vector<std::string> words) {
   return {{"enum", std::move(words)}};
+}
+
+/// One or more, with commas between.
+json names_of_techniques() {
+  std::string any;
+  for (const auto name : technique_names()) any += (any.empty() ? "" : "|") + std::string(name);
+  return {{"pattern", "^(" + any + ")(,(" + any + "))*$"}, {"examples", {"layered,tdm"}}};
 }
 
 Box box_from_json(const json& value) {
@@ -130,7 +140,9 @@ std::vector<SpecField> make_fields() {
       field("candidates.direction_step_deg", "--direction-step-deg", &JobSpec::direction_step_deg, "step of shaft directions in degrees",
             between(1.0, 90.0)),
       field("candidates.cell_shape", "--cell-shape", &JobSpec::cell_shape, "shape of view cells", one_of({"shaft", "box"})),
-      field("impostors.techniques", "--techniques", &JobSpec::techniques, "impostor techniques a candidate may be made with, whichever needs least memory", one_of({"layered", "layered,tdm"})),
+      field("impostors.techniques", "--techniques", &JobSpec::techniques,
+            "techniques that impostors may be made with: one or more of layered, tdm, planar, lod-sprite, with commas between",
+            names_of_techniques()),
       field("impostors.alpha_scale", "--alpha-scale", &JobSpec::alpha_scale, "parallax limit in centre pixels", between(0.1, 16.0)),
       field("impostors.texel_scale", "--texel-scale", &JobSpec::texel_scale, "texel size in centre pixels", between(0.1, 16.0)),
       field("impostors.max_layers", "--max-layers", &JobSpec::max_layers, "layers an impostor may have; 0: 200 for walk, 400 for orbit",
@@ -206,6 +218,30 @@ json::json_pointer pointer_of(const std::string& key) {
   return json::json_pointer(path);
 }
 
+/// Ascending, each once. Nothing where some name is unknown, or there is none.
+std::optional<std::vector<Technique>> parse_techniques(const std::string& text) {
+  std::array<bool, kTechniqueCount> named{};
+  std::istringstream stream(text + ",");
+  for (std::string name; std::getline(stream, name, ',');) {
+    const auto technique = technique_named(name);
+    if (!technique) return std::nullopt;
+    named.at(static_cast<std::size_t>(*technique)) = true;
+  }
+  std::vector<Technique> techniques;
+  for (std::size_t t = 0; t < kTechniqueCount; ++t)
+    if (named.at(t)) techniques.push_back(static_cast<Technique>(t));
+  return techniques;
+}
+
+/// The same techniques are the same job, in whatever order they are named.
+std::string in_order(const json& value, const std::string& place) {
+  const auto techniques = parse_techniques(value);
+  if (!techniques) reject(place, value, "one or more of layered, tdm, planar, lod-sprite, with commas between");
+  std::string text;
+  for (const Technique technique : *techniques) text += (text.empty() ? "" : ",") + std::string(technique_name(technique));
+  return text;
+}
+
 const SpecField* find_field(const std::string& key) {
   for (const auto& field : spec_fields())
     if (field.key == key) return &field;
@@ -237,6 +273,10 @@ const std::vector<SpecField>& spec_fields() {
   return fields;
 }
 
+std::vector<Technique> techniques_of(const JobSpec& spec) {
+  return parse_techniques(spec.techniques).value();
+}
+
 bool forced(const JobSpec& spec, std::string_view stage) {
   return std::ranges::any_of(spec.force, [&](const std::string& word) { return word == stage || word == "all"; });
 }
@@ -249,7 +289,7 @@ void set_field(JobSpec& spec, const SpecField& field, const json& value, const s
         kind == "auto" || kind == "walk" || kind == "orbit" || kind == "boxes" || (kind.starts_with("path:") && kind.size() > 5);
     if (!known) reject(place, value, "auto, walk, orbit, boxes or path:FILE");
   }
-  field.set(spec, value);
+  field.set(spec, field.key == "impostors.techniques" ? json(in_order(value, place)) : value);
 }
 
 void set_field_from_text(JobSpec& spec, const SpecField& field, const std::string& text) {

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "render/base/geometry.h"
+#include "render/impostor/impostor.h"
 
 namespace standin {
 
@@ -55,7 +56,7 @@ struct JobSpec {
   int bake_rounds = 10;
   std::uint32_t size_bakes = 48;
 
-  std::string techniques = "layered";
+  std::string techniques = "layered";  // names with commas between, in the order of the enumeration; techniques_of() reads them
   std::string device = "osmesa";
   std::uint64_t survey_views = 20'000;
   std::uint32_t verify_views = 32;
@@ -75,6 +76,9 @@ struct SpecField {
 };
 
 [[nodiscard]] const std::vector<SpecField>& spec_fields();
+
+/// What candidates may be made with, at least one, ascending.
+[[nodiscard]] std::vector<Technique> techniques_of(const JobSpec& spec);
 
 /// Whether the stage is to do also what cannot change the result.
 [[nodiscard]] bool forced(const JobSpec& spec, std::string_view stage);

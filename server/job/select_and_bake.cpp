@@ -86,8 +86,12 @@ Corrections compare_all(const std::vector<Candidate>& estimated, const std::vect
 
 Corrections margins_of(const SizeModels& sizes) {
   Corrections margins;
-  of(margins, Technique::kLayered) = {1.0, sizes.layered.quads_margin, sizes.layered.texels_margin};
-  if (sizes.depth_mesh) of(margins, Technique::kDepthMesh) = {1.0, sizes.depth_mesh->quads_margin, sizes.depth_mesh->texels_margin};
+  for (std::size_t t = 0; t < kTechniqueCount; ++t) {
+    const auto technique = static_cast<Technique>(t);
+    if (!sizes.offers(technique)) continue;
+    const SizeModel& model = sizes.of(technique);
+    margins[t] = {1.0, model.quads_margin, model.texels_margin};
+  }
   return margins;
 }
 
@@ -218,9 +222,9 @@ class Rounds {
       if (baker_.sizes()[id]) return;
       const Candidate& candidate = candidates_.candidates[id];
       // Nothing is proven of a mesh's size.
-      const double least = candidate.technique == Technique::kLayered
-                               ? bound.texture_bytes(candidate.objects, candidate.view_cell, world_.camera, world_.quality)
-                               : 0.0;
+      const double least = is_mesh(candidate.technique)
+                               ? 0.0
+                               : bound.texture_bytes(candidate.objects, candidate.view_cell, world_.camera, world_.quality);
       problem_.bytes[id] = std::max(kNothingProven, least);
     });
   }

@@ -27,7 +27,7 @@ function schemaKeys() {
 function otherValue(setting) {
   if (setting.enum) return setting.enum.find((word) => word !== setting.default) ?? setting.default;
   if (setting.type === "boolean") return String(!setting.default);
-  if (setting.type === "string") return setting.pattern ? "orbit" : "cm";
+  if (setting.type === "string") return setting.examples?.[0] ?? (setting.pattern ? "orbit" : "cm");
   if (setting.type === "array") return setting.items.type === "number" ? "33,44" : (setting.items.enum?.[0] ?? "word");
   const least = setting.exclusiveMinimum ?? setting.minimum ?? 0;
   const value = setting.default + 1;

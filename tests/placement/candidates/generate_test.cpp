@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <set>
 
 #include "placement/candidates/cell_index.h"
@@ -84,6 +85,108 @@ TEST(Candidates, BoxesHoldWhatTheyPromise) {
     if (candidate.cells.size() > 1) ++shared;
   }
   EXPECT_GT(shared, 0U);
+}
+
+/// Every technique, or those named.
+SizeModels offering(std::initializer_list<Technique> techniques) {
+  SizeModels sizes;
+  for (const Technique technique : techniques) sizes.offer(technique, default_size_model(technique));
+  return sizes;
+}
+constexpr auto kAllTechniques = {Technique::kLayered, Technique::kDepthMesh, Technique::kPlanar, Technique::kLodSprite};
+
+bool one_layer(const ToyWorld& world, const Candidate& candidate) {
+  BakeQuality planar = world.quality;
+  planar.max_layers = 1;
+  return plan_impostor(bounds_of(world, candidate), ObjectOutlines(world.scene).of(candidate.objects), candidate.view_cell, world.camera,
+                       planar)
+      .possible;
+}
+
+using Place = std::pair<std::uint32_t, std::vector<std::uint32_t>>;  // node, cells
+
+TEST(Candidates, AreOfferedOncePerTechnique) {
+  std::array<std::size_t, kTechniqueCount> count{};
+  for (std::uint64_t seed = 1; seed <= 15; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    auto world = random_world(seed, 8, 30);
+    world.sizes = offering(kAllTechniques);
+    const auto set = world.generate();
+    EXPECT_EQ(set.generated, set.candidates.size() + set.duplicates + set.impossible + set.hopeless);
+    std::set<std::pair<Technique, Place>> once;
+    std::set<Place> layered;
+    for (const auto& candidate : set.candidates)
+      if (candidate.technique == Technique::kLayered) layered.insert({candidate.node, candidate.cells});
+    for (const auto& candidate : set.candidates) {
+      ++count.at(static_cast<std::size_t>(candidate.technique));
+      check_candidate(world, candidate);
+      EXPECT_TRUE(once.insert({candidate.technique, {candidate.node, candidate.cells}}).second);
+      // Where layers are offered, one layer is the layered impostor's: a planar one is for cells that nothing else serves together.
+      if (candidate.technique != Technique::kPlanar) continue;
+      EXPECT_TRUE(one_layer(world, candidate));
+      EXPECT_FALSE(layered.contains({candidate.node, candidate.cells}));
+    }
+  }
+  for (std::size_t t = 0; t < kTechniqueCount; ++t) EXPECT_GT(count.at(t), 0U) << technique_names()[t];
+}
+
+TEST(Candidates, OfLayersAreTheSameWhateverElseIsOffered) {
+  auto world = random_world(4, 8, 30);
+  const auto alone = world.generate();
+  world.sizes = offering(kAllTechniques);
+  std::vector<Candidate> layered = world.generate().candidates;
+  std::erase_if(layered, [](const Candidate& candidate) { return candidate.technique != Technique::kLayered; });
+  std::set<Place> places;
+  for (const auto& candidate : layered) places.insert({candidate.node, candidate.cells});
+  for (const auto& candidate : alone.candidates) EXPECT_TRUE(places.contains({candidate.node, candidate.cells}));
+}
+
+TEST(Candidates, OfOneTechniqueAreOfThatAlone) {
+  for (const Technique technique : kAllTechniques) {
+    auto world = random_world(2, 8, 30);
+    world.sizes = offering({technique});
+    const auto set = world.generate();
+    EXPECT_GT(set.candidates.size(), 0U) << technique_name(technique);
+    EXPECT_EQ(set.generated, set.candidates.size() + set.duplicates + set.impossible + set.hopeless);
+    for (const auto& candidate : set.candidates) {
+      EXPECT_EQ(candidate.technique, technique);
+      EXPECT_TRUE(technique != Technique::kPlanar || one_layer(world, candidate));
+    }
+    EXPECT_EQ(world.reach().predicted_ms.size(), world.subdivision.cpvs.size());
+  }
+}
+
+// A row of cells before a deep row of walls: together they need layers, in parts a plane each.
+TEST(Candidates, PlanarOnesServePartsOfWhatNeedsLayers) {
+  ToyWorld world = empty_toy_world();
+  for (int i = 0; i < 3; ++i) world.add_object({Vec3(-3.0, 0.0, -4.0 * i), Vec3(3.0, 3.0, -4.0 * i + 1.0)});
+  world.finish_objects();
+  for (int i = 0; i < 8; ++i) {
+    const Vec3 low(30.0 * i - 120.0, 1.7, 400.0);
+    const auto cell = world.add_cell({6, {i, 0, 0}}, {low, low + Vec3(30.0, 0.1, 10.0)});
+    world.add_cpv(cell, {{0, 4.0}, {1, 4.0}, {2, 4.0}});
+  }
+  world.sizes = offering({Technique::kLayered, Technique::kPlanar});
+  const auto set = world.generate();
+  const auto layers_are_needed = [&](const Candidate& candidate) { return candidate.cells.size() == 8 && !one_layer(world, candidate); };
+  EXPECT_TRUE(std::any_of(set.candidates.begin(), set.candidates.end(), layers_are_needed));
+  std::set<std::uint32_t> served;
+  for (const auto& candidate : set.candidates)
+    if (candidate.technique == Technique::kPlanar && candidate.cells.size() > 1)
+      served.insert(candidate.cells.begin(), candidate.cells.end());
+  EXPECT_GE(served.size(), 4U);
+}
+
+TEST(Candidates, MaskedSurfacesAreNotOfferedAsLodSprites) {
+  auto world = random_world(2, 8, 30);
+  world.sizes = offering(kAllTechniques);
+  Material leaves;
+  leaves.alpha_mode = AlphaMode::kMask;
+  world.scene.materials.push_back(leaves);
+  world.scene.meshes.emplace_back();  // without vertices: bounds are looked at
+  world.scene.parts.push_back({});
+  for (Object& object : world.scene.objects) object.part_count = 1;
+  for (const auto& candidate : world.generate().candidates) EXPECT_NE(candidate.technique, Technique::kLodSprite);
 }
 
 TEST(Candidates, DoNotDependOnThreads) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <optional>
 
 #include "tests/placement/candidates/toy_world.h"
 #include "tests/support/scene_builder.h"
@@ -94,6 +95,28 @@ TEST(SizeModel, OneLayerIsItsRectangle) {
     EXPECT_NEAR(size.texels / texels, 1.0, 0.03);
     EXPECT_LT(size.quads, 2.0);
   }
+}
+
+TEST(SizeModels, HoldOneEntryForEachTechniqueThatIsOffered) {
+  SizeModels sizes = default_size_model();
+  EXPECT_TRUE(sizes.offers(Technique::kLayered));
+  for (const auto other : {Technique::kDepthMesh, Technique::kPlanar, Technique::kLodSprite}) EXPECT_FALSE(sizes.offers(other));
+  SizeModel sprite = default_size_model(Technique::kLodSprite);
+  sprite.quads_margin = 7.0;
+  sizes.offer(Technique::kLodSprite, sprite);
+  EXPECT_EQ(sizes.of(Technique::kLodSprite).quads_margin, 7.0);
+  EXPECT_EQ(sizes.of(Technique::kLayered).quads_margin, 1.0);
+  EXPECT_FALSE(SizeModels{}.offers(Technique::kLayered));
+  EXPECT_THROW(static_cast<void>(sizes.of(Technique::kPlanar)), std::bad_optional_access);
+}
+
+// A planar impostor is a layered one of one layer, so to begin with they weigh the same; meshes have a law of their own.
+TEST(SizeModels, StartFromTheirTechniquesLaw) {
+  const SizeInput input = input_of(3e4, 12.0, 4.0, 500.0);
+  const auto bytes = [&](Technique technique) { return estimate_size(default_size_model(technique), input).bytes; };
+  EXPECT_EQ(bytes(Technique::kPlanar), bytes(Technique::kLayered));
+  EXPECT_NE(bytes(Technique::kDepthMesh), bytes(Technique::kLayered));
+  EXPECT_NE(bytes(Technique::kLodSprite), bytes(Technique::kDepthMesh));
 }
 
 TEST(SizeModel, CountsTheObjectsOwnRectangles) {

@@ -23,7 +23,7 @@ struct ToyWorld {
   TimeModel model;
   Camera camera;
   BakeQuality quality;
-  SizeModel sizes = default_size_model();
+  SizeModels sizes = default_size_model();
   CandidateOptions options;
 
   [[nodiscard]] CandidateSet generate() const {

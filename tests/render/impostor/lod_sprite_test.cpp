@@ -127,19 +127,31 @@ TEST(LodSprite, WhatTheReferenceViewpointDoesNotSeeHasItsOwnColour) {
   scene.add_object(test::rectangle({-4, -4, -6}, {8, 0, 0}, {0, 8, 0}), coloured({0, 1, 0, 1}));
   scene.add_object(test::rectangle({-2, -2, 0}, {4, 0, 0}, {0, 4, 0}), coloured({1, 0, 0, 1}));
   const Impostor impostor = baked(scene.scene, shaft_towards_z(0.2, 30.0));
-  ASSERT_EQ(impostor.mesh.charts.size(), 2U);
-  std::size_t at = 0;
-  for (const Chart& chart : impostor.mesh.charts) {
-    const double depth = glm::dot(impostor.mesh.vertices[chart.first_vertex].offset, impostor.frame.forward);
-    const bool wall = impostor.frame.reference_viewpoint.z - depth < -3.0;
-    std::size_t right = 0, filled = 0;
-    for (std::size_t i = 0; i < std::size_t{chart.width} * chart.height; ++i, at += 4) {
-      if (impostor.texels[at + 3] == 0) continue;
-      ++filled;
-      right += impostor.texels[at + (wall ? 1 : 0)] == 255 ? 1 : 0;
+  const TexturedMesh& mesh = impostor.mesh;
+  std::size_t boards = 0, walls = 0, first_texel = 0;
+  for (const Chart& chart : mesh.charts) {
+    for (std::uint32_t i = chart.first_index; i < chart.first_index + chart.index_count; i += 3) {
+      Vec2 low(1e9), high(-1e9);
+      bool wall = false;
+      for (std::uint32_t k = 0; k < 3; ++k) {
+        const ImpostorVertex& corner = mesh.vertices[chart.first_vertex + mesh.indices[i + k]];
+        wall = impostor.frame.reference_viewpoint.z - glm::dot(corner.offset, impostor.frame.forward) < -3.0;
+        low = glm::min(low, corner.texel);
+        high = glm::max(high, corner.texel);
+      }
+      ++(wall ? walls : boards);
+      // All opaque texels that the triangle's box in the chart holds.
+      for (auto y = static_cast<std::uint32_t>(low.y); y < std::max(high.y, low.y + 0.5); ++y)
+        for (auto x = static_cast<std::uint32_t>(low.x); x < std::max(high.x, low.x + 0.5); ++x) {
+          const std::size_t at = 4 * (first_texel + std::size_t{y} * chart.width + x);
+          if (impostor.texels[at + 3] == 0) continue;
+          EXPECT_EQ(impostor.texels[at + (wall ? 1 : 0)], 255) << (wall ? "wall" : "board");
+        }
     }
-    EXPECT_EQ(right, filled) << (wall ? "wall" : "board");
+    first_texel += std::size_t{chart.width} * chart.height;
   }
+  EXPECT_GE(boards, 2U);
+  EXPECT_GE(walls, 2U);
 }
 
 // Stripes finer than the coarse mesh come from the image: on a bumpy sheet that becomes flat at this distance.
@@ -161,6 +173,37 @@ TEST(LodSprite, TheImageIsProjectedOntoTheCoarseMesh) {
   const double image = impostor.frame.width * impostor.frame.height;
   EXPECT_NEAR(static_cast<double>(red) / image, 0.5, 0.06);
   EXPECT_NEAR(static_cast<double>(green) / image, 0.5, 0.06);
+}
+
+// A board before a smaller one, close behind it: nobody in the shaft looks around the edge. The farther behind, the more of it is seen.
+TEST(LodSprite, WhatNobodySeesIsLeftOut) {
+  for (const double behind : {1.0, 40.0}) {
+    test::SmallScene scene;
+    scene.add_object(test::rectangle({-4, -4, 0}, {8, 0, 0}, {0, 8, 0}));
+    scene.add_object(test::rectangle({-2, -2, -behind}, {4, 0, 0}, {0, 4, 0}));
+    EXPECT_EQ(baked(scene.scene, shaft_towards_z(0.2, 30.0)).mesh.triangle_count(), behind < 2.0 ? 2U : 4U);
+  }
+}
+
+// Single-sided boards hide only where they face: the one before is culled by a device for whoever looks at the one behind.
+TEST(LodSprite, BacksHideNothing) {
+  test::SmallScene scene;
+  Material material = coloured({1, 1, 1, 1});
+  material.double_sided = false;
+  scene.add_object(test::rectangle({-4, -4, 0}, {0, 8, 0}, {8, 0, 0}), material);   // faces -z
+  scene.add_object(test::rectangle({-2, -2, -1}, {4, 0, 0}, {0, 4, 0}), material);  // faces +z, the viewer
+  EXPECT_EQ(baked(scene.scene, shaft_towards_z(0.2, 30.0)).mesh.triangle_count(), 2U);
+}
+
+TEST(LodSprite, PlainTrianglesOfOneColourShareATexel) {
+  test::SmallScene scene;
+  for (int i = 0; i < 6; ++i)
+    scene.add_object(test::rectangle({4.0 * i, 0, 0}, {2, 0, 0}, {0, 8, 0}),
+                     coloured(i % 2 == 0 ? glm::vec4(1, 0, 0, 1) : glm::vec4(0, 0, 1, 1)));
+  const Impostor impostor = baked(scene.scene, shaft_towards_z(0.2, 60.0));
+  EXPECT_EQ(impostor.mesh.triangle_count(), 12U);
+  ASSERT_EQ(impostor.mesh.charts.size(), 1U);
+  EXPECT_EQ(impostor.texel_count(), 2U);
 }
 
 TEST(LodSprite, MaskedSurfacesAreRefused) {
@@ -198,18 +241,18 @@ TEST(SpriteContraction, ALoosePartThatAnotherShowsIsTakenAway) {
   EXPECT_EQ(contracted(mesh, points, viewpoints, 1e-6).triangles.size(), 3U);
 }
 
-TEST(TriangleGrid, AgreesWithAskingEveryTriangle) {
+TEST(TriangleTree, AgreesWithAskingEveryTriangle) {
   Rng rng(11);
   std::vector<Triangle> triangles = test::random_triangles(rng, {Vec3(-4, -3, -2), Vec3(4, 3, 2)}, 60);
-  const TriangleGrid grid(triangles);
+  const TriangleTree tree(triangles);
   for (int i = 0; i < 400; ++i) {
     const Vec3 point = test::random_point(rng, {Vec3(-8, -8, -8), Vec3(8, 8, 8)});
     double least = std::numeric_limits<double>::infinity();
     for (const Triangle& t : triangles) least = std::min(least, glm::length(point_at(t, nearest_barycentric(t, point)) - point));
-    const auto nearest = grid.nearest(point, std::numeric_limits<double>::infinity());
+    const auto nearest = tree.nearest(point, std::numeric_limits<double>::infinity());
     ASSERT_TRUE(nearest.has_value());
     EXPECT_NEAR(nearest->distance, least, 1e-12);
-    EXPECT_FALSE(grid.nearest(point, 0.99 * least).has_value());
+    EXPECT_FALSE(tree.nearest(point, 0.99 * least).has_value());
   }
 }
 
