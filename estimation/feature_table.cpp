@@ -63,6 +63,12 @@ struct PartSum {
   double edge_pixels = 0.0;
   double pixels = 0.0;  // generated
 
+  void add(const MostInImage& most, double inwards, PixelKind kind, double sample_triangles) {
+    triangles += sample_triangles;
+    edge_pixels += std::min(most.edge_pixels(inwards), most_edge_pixels(kind) * sample_triangles);
+    pixels += most.pixels(inwards);
+  }
+
   /// No longer than the edges of so many triangles of twice the mesh's slenderness that share so many pixels (Cauchy and Schwarz): of a
   /// large part near the eye, only as much as there is room for in the image. Monotone in all three, so a bound stays one.
   void limit_edges(double slenderness, double most_pixels) {
@@ -104,16 +110,40 @@ PartSum most_from_box(const std::vector<SurfaceSample>& samples, const PlacedMes
   PartSum sum;
   for (const SurfaceSample& sample : samples) {
     const MostInImage most = projection.most(mesh.place(sample), style.double_sided);
-    if (!most.faces) continue;
-    sum.triangles += sample.triangles;
-    sum.edge_pixels += std::min(most.edge_pixels, most_edge_pixels(style.kind) * sample.triangles);
-    sum.pixels += most.pixels;
+    if (most.faces) sum.add(most, 1.0, style.kind, sample.triangles);
   }
+  return sum;
+}
+
+std::vector<ObjectFromBox::Sample> samples_from_box(const std::vector<SurfaceSample>& samples, const PlacedMesh& mesh,
+                                                    const PartStyle& style, const ProjectionFromBox& projection, const Box& eyes) {
+  std::vector<ObjectFromBox::Sample> result;
+  for (const SurfaceSample& sample : samples) {
+    const Patch patch = mesh.place(sample);
+    const MostInImage most = projection.most(patch, style.double_sided);
+    if (most.faces) result.push_back({most, Bearing(patch.centre, most.reach_m, eyes), sample.triangles});
+  }
+  return result;
+}
+
+/// The most that samples may show to any view of a gaze.
+PartSum most_in_gaze(const std::vector<ObjectFromBox::Sample>& samples, PixelKind kind, const Gaze& gaze, double cos_corner) {
+  PartSum sum;
+  for (const ObjectFromBox::Sample& sample : samples)
+    if (const auto least_cosine = gaze.least_cosine(sample.bearing))
+      sum.add(sample.most, std::max(1.0, *least_cosine / cos_corner), kind, sample.triangles);
   return sum;
 }
 
 PartSum larger(const PartSum& a, const PartSum& b) {
   return {std::max(a.triangles, b.triangles), std::max(a.edge_pixels, b.edge_pixels), std::max(a.pixels, b.pixels)};
+}
+
+void add_part(PartSum most, PixelKind kind, double slenderness, double most_passed_pixels, Features& sum) {
+  most.limit_edges(slenderness, most_passed_pixels);
+  sum[Term::kOnScreenTriangles] += most.triangles;
+  sum[Term::kEdgePixels] += most.edge_pixels;
+  sum[kPixelTerm[static_cast<std::size_t>(kind)]] += most.pixels;
 }
 
 void add_passed(const ScreenCoverage& coverage, Features& sum) {
@@ -189,10 +219,36 @@ Features FeatureTable::bound(std::uint32_t object, const Box& eyes) const {
     const SurfaceSamples& samples = samples_[part.mesh];
     PartSum most = most_from_box(samples.samples, mesh, style, projection);
     if (maybe_near) most = larger(most, most_from_box(samples.near_samples, mesh, style, projection));
-    most.limit_edges(samples.slenderness, most_passed_pixels_);
-    features[Term::kOnScreenTriangles] += most.triangles;
-    features[Term::kEdgePixels] += most.edge_pixels;
-    features[kPixelTerm[static_cast<std::size_t>(style.kind)]] += most.pixels;
+    add_part(most, style.kind, samples.slenderness, most_passed_pixels_, features);
+  }
+  for (const Term term : kPixelTerm) features[term] = std::min(features[term], most_passed_pixels_);
+  return features;
+}
+
+ObjectFromBox FeatureTable::from_box(std::uint32_t object, const Box& eyes) const {
+  if (eyes.empty()) throw Failure(ErrorWord::kInternal, "features of object " + std::to_string(object) + ": no eyes");
+  const Object& drawn = scene_->objects[object];
+  const ProjectionFromBox projection(camera_, eyes);
+  const PlacedMesh mesh(drawn.world_from_object, Mat3(1.0), Vec3(0.0));
+  const bool maybe_near = distance(eyes, drawn.bounds) < shapes_[object].radius_m;
+  ObjectFromBox result{shapes_[object].counts, {}};
+  for (std::uint32_t p = drawn.first_part; p < drawn.first_part + drawn.part_count; ++p) {
+    const Part& part = scene_->parts[p];
+    const PartStyle style = style_of(*scene_, part);
+    const SurfaceSamples& samples = samples_[part.mesh];
+    result.parts.push_back({style.kind, samples.slenderness, samples_from_box(samples.samples, mesh, style, projection, eyes), {}});
+    if (maybe_near) result.parts.back().near_samples = samples_from_box(samples.near_samples, mesh, style, projection, eyes);
+  }
+  return result;
+}
+
+Features FeatureTable::bound(const ObjectFromBox& object, const Gaze& gaze) const {
+  const double cos_corner = std::cos(camera_.half_diagonal_rad());
+  Features features = object.counts;
+  for (const ObjectFromBox::Part& part : object.parts) {
+    const PartSum most =
+        larger(most_in_gaze(part.samples, part.kind, gaze, cos_corner), most_in_gaze(part.near_samples, part.kind, gaze, cos_corner));
+    add_part(most, part.kind, part.slenderness, most_passed_pixels_, features);
   }
   for (const Term term : kPixelTerm) features[term] = std::min(features[term], most_passed_pixels_);
   return features;

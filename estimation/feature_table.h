@@ -2,14 +2,16 @@
 //
 // A single view's estimate sums over surface samples (surface_samples.h, projection.h), and lets pass only as many pixels as the image has
 // room for (screen_coverage.h). A bound for all views from a box sums the greatest value of each of these terms over the box, sample by
-// sample: every part of a large object counts at its own distance, and what faces away from the whole box not at all. So bound >= estimate
-// holds term by term, and a smaller box never has a larger bound.
+// sample: every part of a large object counts at its own distance, and what faces away from the whole box not at all. Told in which
+// interval of directions the views look (gaze.h), it leaves out the samples that none of them sees. So bound >= estimate holds term by
+// term, and neither a smaller box nor fewer directions ever have a larger bound.
 #pragma once
 
 #include <span>
 #include <vector>
 
 #include "estimation/features.h"
+#include "estimation/gaze.h"
 #include "estimation/projection.h"
 #include "estimation/screen_coverage.h"
 #include "estimation/surface_samples.h"
@@ -18,6 +20,23 @@ namespace standin {
 
 /// As the renderer draws it: a texture needs coordinates, and an alpha test needs a texture.
 [[nodiscard]] PixelKind pixel_kind(const Scene& scene, const Part& part);
+
+/// What the samples of an object may show at most to eyes in a box, for asking about many gazes.
+struct ObjectFromBox {
+  struct Sample {
+    MostInImage most;
+    Bearing bearing;
+    double triangles = 0.0;
+  };
+  struct Part {
+    PixelKind kind = PixelKind::kPlain;
+    double slenderness = 0.0;
+    std::vector<Sample> samples;  // those that face some eye
+    std::vector<Sample> near_samples;
+  };
+  Features counts;  // draws, triangles: the same for every view
+  std::vector<Part> parts;
+};
 
 /// `scene` must outlive the table. Const members may be called from several threads.
 class FeatureTable {
@@ -29,6 +48,9 @@ class FeatureTable {
   /// Upper bound over all views from `eyes`, in any direction, of what an object adds to a frame. About a microsecond a part, 15 for a part
   /// that may be within reach.
   [[nodiscard]] Features bound(std::uint32_t object, const Box& eyes) const;
+  [[nodiscard]] ObjectFromBox from_box(std::uint32_t object, const Box& eyes) const;
+  /// As bound(), over the views of one gaze from the same box. About a microsecond a part, 15 for a part that may be within reach.
+  [[nodiscard]] Features bound(const ObjectFromBox& object, const Gaze& gaze) const;
   /// A whole frame: frame_features(), and `objects` as they hide each other. At most the sum of their estimates.
   [[nodiscard]] Features frame(std::span<const std::uint32_t> objects, const View& view) const;
 

@@ -86,11 +86,20 @@ struct Projection {
   }
 };
 
-/// What a patch seen from anywhere in a box may be at most.
+/// What a patch seen from anywhere in a box may be at most, `inwards` times deeper than in the image's corner (>= 1).
 struct MostInImage {
-  bool faces = false;  // some eye
-  double pixels = 0.0;
-  double edge_pixels = 0.0;
+  bool faces = false;         // some eye
+  double reach_m = 0.0;       // of its parts from its centre; 0 where it is small
+  double corner_depth_m = 0;  // least depth at which it can be seen
+  double facing_px_m2 = 0.0;  // f^2 times the area that faces the eye
+  double softening_m2 = 0.0;
+  double edges_px_m = 0.0;
+
+  [[nodiscard]] double pixels(double inwards = 1.0) const {
+    const double depth_m = inwards * corner_depth_m;
+    return facing_px_m2 / (depth_m * (depth_m * depth_m + softening_m2));
+  }
+  [[nodiscard]] double edge_pixels(double inwards = 1.0) const { return edges_px_m / (inwards * corner_depth_m); }
 };
 
 /// The same for all eyes in a box and all directions of view: an upper bound, and never less for a larger box.
@@ -117,13 +126,17 @@ class ProjectionFromBox {
     if (!double_sided && !(towards > -1e-9 * area_m2)) return {};
     // Parts lie in the patch's plane, within half the diagonal of the square; no part is smaller than the deepest ones.
     const bool small = is_small((1.0 - 1e-9) * to_centre_m * to_centre_m, area_m2);
-    const double nearest_m = std::max(small ? to_centre_m : to_centre_m - std::sqrt(0.5 * area_m2), near_m_);
-    const double least_depth_m = cosine_ * nearest_m;
+    const double reach_m = small ? 0.0 : std::sqrt(0.5 * area_m2);
+    const double nearest_m = std::max(to_centre_m - reach_m, near_m_);
     const double facing_m2 = std::min(std::max(towards, 0.0), area_m2 * nearest_m);
     const double softening_m2 = radius2_m2(small ? area_m2 : area_m2 * kDeepestShare);
     const double cosine = area_m2 > 0.0 ? std::min(1.0, facing_m2 / (area_m2 * nearest_m)) : 0.0;
-    return {true, kRounding * focal_px_ * focal_px_ * facing_m2 / (least_depth_m * (least_depth_m * least_depth_m + softening_m2)),
-            kRounding * 0.5 * (1.0 + cosine) * patch.edges_m * focal_px_ / least_depth_m};
+    return {true,
+            reach_m,
+            cosine_ * nearest_m,
+            kRounding * focal_px_ * focal_px_ * facing_m2,
+            softening_m2,
+            kRounding * 0.5 * (1.0 + cosine) * patch.edges_m * focal_px_};
   }
 
  private:

@@ -56,7 +56,7 @@ class Checker {
     const Box box = cell_boxes_.cell_box(cell.key);
     if (!(box == cell.box))
       findings.push_back({Violation::kCellBox, cell_id, "cell " + std::to_string(cell_id) + ": box differs from the view space's"});
-    const CellCosts costs = estimator_.cell_costs(cell_boxes_.chain(cell.key), visible(cell));
+    CellCosts costs = estimator_.cell_costs(cell_boxes_.chain(cell.key), visible(cell));
     std::set<DirectionInterval> listed;
     if (const auto found = cpvs_of_cell_.find(cell_id); found != cpvs_of_cell_.end()) {
       for (const auto p : found->second) {
@@ -73,7 +73,7 @@ class Checker {
     return cell.visible_set < 0 ? everything_ : placement_.visible_sets[static_cast<std::size_t>(cell.visible_set)];
   }
 
-  void check_cpv(std::uint32_t p, const PlacementCell& cell, const CellCosts& costs, std::vector<Finding>& findings) const {
+  void check_cpv(std::uint32_t p, const PlacementCell& cell, CellCosts& costs, std::vector<Finding>& findings) const {
     const PlacementCpv& cpv = placement_.cpvs[p];
     const std::string place = "cpv " + std::to_string(p);
     const auto report = [&](Violation violation, const std::string& what) { findings.push_back({violation, p, place + ": " + what}); };
@@ -141,8 +141,8 @@ class Checker {
   }
 
   // Depth first over the direction quadtree; a node within the budget vouches for all below it.
-  void check_unlisted(std::uint32_t cell_id, const CellCosts& costs, const std::set<DirectionInterval>& listed,
-                      std::vector<Finding>& findings, std::uint64_t& regions) const {
+  void check_unlisted(std::uint32_t cell_id, CellCosts& costs, const std::set<DirectionInterval>& listed, std::vector<Finding>& findings,
+                      std::uint64_t& regions) const {
     std::vector<DirectionInterval> pending;
     for (int face = 0; face < kFaceCount; ++face) pending.push_back({static_cast<Face>(face), 0, 0, 0});
     while (!pending.empty()) {
@@ -150,11 +150,14 @@ class Checker {
       pending.pop_back();
       if (listed.contains(interval)) continue;
       ++regions;
-      const double bound_ms = input_.model.bound_ms(estimator_.region_bound(costs, interval).predicted_ms);
-      if (bound_ms <= input_.budget_ms * (1.0 + kRelativeTolerance)) continue;
-      if (interval.level < estimator_.directions().leaf_level())
+      const auto is_slow = [&](double bound_ms) { return bound_ms > input_.budget_ms * (1.0 + kRelativeTolerance); };
+      if (!is_slow(input_.model.bound_ms(estimator_.coarse_bound_ms(costs, interval)))) continue;
+      if (interval.level < estimator_.directions().leaf_level()) {
         for (int k = 0; k < 4; ++k) pending.push_back(interval.child(k));
-      else
+        continue;
+      }
+      const double bound_ms = input_.model.bound_ms(estimator_.region_bound(costs, interval).predicted_ms);
+      if (is_slow(bound_ms))
         findings.push_back({Violation::kMissingRegion, cell_id,
                             "cell " + std::to_string(cell_id) + ": face " + std::string(face_frame(interval.face).name) + " interval " +
                                 std::to_string(interval.i) + "," + std::to_string(interval.j) + " has a bound of " +

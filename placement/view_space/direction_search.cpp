@@ -13,8 +13,7 @@ struct Node {
 
 class Search {
  public:
-  Search(const RegionEstimator& estimator, const CellCosts& cell, double budget_ms)
-      : estimator_(estimator), cell_(cell), budget_ms_(budget_ms) {
+  Search(const RegionEstimator& estimator, CellCosts& cell, double budget_ms) : estimator_(estimator), cell_(cell), budget_ms_(budget_ms) {
     result_.worst_predicted_ms = -1.0;
   }
 
@@ -57,7 +56,7 @@ class Search {
   }
 
   void take_leaf(const Node& leaf) {
-    const double predicted_ms = leaf.sums.predicted_ms();
+    const double predicted_ms = estimator_.sums_of(cell_, leaf.interval, leaf.seen).predicted_ms();
     if (predicted_ms > result_.worst_predicted_ms) {
       result_.worst_predicted_ms = predicted_ms;
       result_.worst_interval = leaf.interval;
@@ -68,14 +67,14 @@ class Search {
   }
 
   const RegionEstimator& estimator_;
-  const CellCosts& cell_;
+  CellCosts& cell_;
   double budget_ms_;
   DirectionSearchResult result_;
 };
 
 }  // namespace
 
-DirectionSearchResult search_directions(const RegionEstimator& estimator, const CellCosts& cell, double predicted_budget_ms) {
+DirectionSearchResult search_directions(const RegionEstimator& estimator, CellCosts& cell, double predicted_budget_ms) {
   return Search(estimator, cell, predicted_budget_ms).run();
 }
 

@@ -28,6 +28,6 @@ struct DirectionSearchResult {
 };
 
 /// All leaf intervals whose bound exceeds the budget, and the worst one in any case.
-[[nodiscard]] DirectionSearchResult search_directions(const RegionEstimator& estimator, const CellCosts& cell, double predicted_budget_ms);
+[[nodiscard]] DirectionSearchResult search_directions(const RegionEstimator& estimator, CellCosts& cell, double predicted_budget_ms);
 
 }  // namespace standin

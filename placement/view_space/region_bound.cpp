@@ -59,6 +59,7 @@ CellCosts RegionEstimator::cell_costs(std::vector<Box> chain, std::span<const st
   }
   std::sort(cell.objects.begin(), cell.objects.end(),
             [this](const ObjectCost& a, const ObjectCost& b) { return (*rank_)[a.object] < (*rank_)[b.object]; });
+  cell.samples.resize(cell.objects.size());
   return cell;
 }
 
@@ -74,7 +75,7 @@ bool RegionEstimator::may_see(const DirectionInterval& interval, const CellCosts
   return std::all_of(cell.chain.begin(), cell.chain.end(), [&](const Box& box) { return standin::may_see(cone, box, bounds); });
 }
 
-RegionBound RegionEstimator::region_bound(const CellCosts& cell, const DirectionInterval& interval) const {
+std::vector<std::uint32_t> RegionEstimator::seen_in(const CellCosts& cell, const DirectionInterval& interval) const {
   const auto seen_by_all = [&](const Box& bounds) {
     for (DirectionInterval node = interval; node.level >= 0; node = node.parent())
       if (!may_see(node, cell, bounds)) return false;
@@ -83,20 +84,47 @@ RegionBound RegionEstimator::region_bound(const CellCosts& cell, const Direction
   std::vector<std::uint32_t> seen;
   for (std::uint32_t i = 0; i < cell.objects.size(); ++i)
     if (seen_by_all(cell.objects[i].bounds)) seen.push_back(i);
-  return bound_of(cell, seen);
+  return seen;
 }
 
-RegionBound RegionEstimator::bound_of(const CellCosts& cell, std::span<const std::uint32_t> seen) const {
+double RegionEstimator::coarse_bound_ms(const CellCosts& cell, const DirectionInterval& interval) const {
   RegionSums sums = empty_frame();
-  for (const std::uint32_t i : seen) sums.add(cell.objects[i].cost);
+  for (const std::uint32_t i : seen_in(cell, interval)) sums.add(cell.objects[i].cost);
+  return sums.predicted_ms();
+}
+
+RegionBound RegionEstimator::region_bound(CellCosts& cell, const DirectionInterval& interval) const {
+  return bound_of(cell, interval, seen_in(cell, interval));
+}
+
+// Never above the cost for any direction, whatever the rounding: the search relies on it.
+Cost RegionEstimator::cost_in(CellCosts& cell, std::uint32_t index, const Gaze& gaze) const {
+  const ObjectCost& any = cell.objects[index];
+  auto& samples = cell.samples[index];
+  if (!samples) samples = features_.from_box(any.object, cell.chain.front());
+  const Cost sharp = model_->cost(features_.bound(*samples, gaze));
+  return {std::min(sharp.fixed_ms, any.cost.fixed_ms), std::min(sharp.pixel_ms, any.cost.pixel_ms)};
+}
+
+RegionSums RegionEstimator::sums_of(CellCosts& cell, const DirectionInterval& interval, std::span<const std::uint32_t> seen) const {
+  const Gaze gaze(directions_.cone(interval), cell.chain.front(), features_.camera());
+  RegionSums sums = empty_frame();
+  for (const std::uint32_t i : seen) sums.add(cost_in(cell, i, gaze));
+  return sums;
+}
+
+RegionBound RegionEstimator::bound_of(CellCosts& cell, const DirectionInterval& interval, std::span<const std::uint32_t> seen) const {
+  const Gaze gaze(directions_.cone(interval), cell.chain.front(), features_.camera());
+  std::vector<Cost> costs;
+  RegionSums sums = empty_frame();
+  for (const std::uint32_t i : seen) sums.add(costs.emplace_back(cost_in(cell, i, gaze)));
   RegionBound bound;
   bound.pixels_capped = sums.pixels_capped();
   bound.constant_ms = bound.pixels_capped ? empty_frame().capped_ms : empty_frame().with_pixels_ms;
   bound.predicted_ms = sums.predicted_ms();
-  for (const std::uint32_t i : seen) {
-    const Cost& cost = cell.objects[i].cost;
-    const double predicted_ms = bound.pixels_capped ? cost.fixed_ms : cost.fixed_ms + cost.pixel_ms;
-    if (predicted_ms > 0.0) bound.terms.push_back({cell.objects[i].object, predicted_ms});
+  for (std::size_t k = 0; k < seen.size(); ++k) {
+    const double predicted_ms = bound.pixels_capped ? costs[k].fixed_ms : costs[k].fixed_ms + costs[k].pixel_ms;
+    if (predicted_ms > 0.0) bound.terms.push_back({cell.objects[seen[k]].object, predicted_ms});
   }
   return bound;
 }

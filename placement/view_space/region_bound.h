@@ -5,11 +5,15 @@
 // face. Its cost bound is that of the cell's own box (the least over the chain: a smaller box never has a larger one). Child
 // regions are therefore never bounded above their parents, object by object.
 //
+// That cost holds for any direction, cheaply, and is what the search prunes by. Of a leaf region that it leaves, every object is looked at
+// again, sample by sample (estimation/gaze.h): what of it no view of the region sees costs nothing.
+//
 // Pixel work saturates (screen_coverage.h), so a region has two linear bounds: all terms with their pixels, or terms without and as many of
 // the costliest pixels as can pass. The smaller is chosen.
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -48,6 +52,7 @@ struct ObjectCost {
 struct CellCosts {
   std::vector<Box> chain;  // boxes of the cell and its ancestors, the cell's first
   std::vector<ObjectCost> objects;
+  std::vector<std::optional<ObjectFromBox>> samples;  // of `objects`, as far as anybody asked for them
 };
 
 /// Running sums of a region's two linear forms, always added up in hierarchy order.
@@ -81,15 +86,22 @@ class RegionEstimator {
   [[nodiscard]] RegionSums empty_frame() const;
   [[nodiscard]] bool may_see(const DirectionInterval& interval, const CellCosts& cell, const Box& bounds) const;
   /// The bound of one region from scratch: what subdivide() finds, for a checker. Uses every ancestor of `interval`.
-  [[nodiscard]] RegionBound region_bound(const CellCosts& cell, const DirectionInterval& interval) const;
+  [[nodiscard]] RegionBound region_bound(CellCosts& cell, const DirectionInterval& interval) const;
   /// The same from the objects already known to be seen (indices into cell.objects, ascending).
-  [[nodiscard]] RegionBound bound_of(const CellCosts& cell, std::span<const std::uint32_t> seen) const;
+  [[nodiscard]] RegionBound bound_of(CellCosts& cell, const DirectionInterval& interval, std::span<const std::uint32_t> seen) const;
+  /// Its sums alone.
+  [[nodiscard]] RegionSums sums_of(CellCosts& cell, const DirectionInterval& interval, std::span<const std::uint32_t> seen) const;
+  /// Not less than region_bound(), and cheap.
+  [[nodiscard]] double coarse_bound_ms(const CellCosts& cell, const DirectionInterval& interval) const;
 
   [[nodiscard]] const DirectionTree& directions() const { return directions_; }
   [[nodiscard]] const FeatureTable& features() const { return features_; }
   [[nodiscard]] const TimeModel& model() const { return *model_; }
 
  private:
+  [[nodiscard]] std::vector<std::uint32_t> seen_in(const CellCosts& cell, const DirectionInterval& interval) const;
+  [[nodiscard]] Cost cost_in(CellCosts& cell, std::uint32_t index, const Gaze& gaze) const;
+
   const Scene* scene_;
   const std::vector<std::uint32_t>* rank_;
   const TimeModel* model_;

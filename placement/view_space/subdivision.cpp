@@ -89,7 +89,8 @@ class Subdivider {
 
   [[nodiscard]] SearchedCell search(const CellKey& key, std::vector<Box> chain, std::int32_t visible_set) const {
     SearchedCell searched{{key, chain.front(), visible_set, 0.0, {}}, std::move(chain), {}};
-    searched.found = search_directions(estimator_, costs_of(searched.cell, searched.chain), options_.predicted_budget_ms);
+    CellCosts costs = costs_of(searched.cell, searched.chain);
+    searched.found = search_directions(estimator_, costs, options_.predicted_budget_ms);
     searched.found.seen.shrink_to_fit();
     searched.cell.worst_predicted_ms = searched.found.worst_predicted_ms;
     searched.cell.worst_interval = searched.found.worst_interval;
@@ -141,10 +142,10 @@ class Subdivider {
   // CPVs of the last cell of `result`.
   void add_cpvs(const SearchedCell& searched, Subdivision& result) const {
     if (searched.found.hot.empty()) return;
-    const CellCosts costs = costs_of(searched.cell, searched.chain);
+    CellCosts costs = costs_of(searched.cell, searched.chain);
     const auto cell = static_cast<std::uint32_t>(result.cells.size() - 1);
     for (const HotRegion& region : searched.found.hot) {
-      const RegionBound bound = estimator_.bound_of(costs, searched.found.seen_in(region));
+      const RegionBound bound = estimator_.bound_of(costs, region.interval, searched.found.seen_in(region));
       const auto at = std::lower_bound(result.intervals.begin(), result.intervals.end(), region.interval);
       result.cpvs.push_back({cell, static_cast<std::uint32_t>(at - result.intervals.begin()), bound.pixels_capped, bound.constant_ms,
                              bound.predicted_ms, result.terms.size(), static_cast<std::uint32_t>(bound.terms.size())});

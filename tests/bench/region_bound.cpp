@@ -57,7 +57,7 @@ class Bench {
 
  private:
   [[nodiscard]] double looseness(const Region& region, std::span<const std::uint32_t> objects, Rng& rng) const {
-    const CellCosts costs = estimator_.cell_costs(cells_.chain(region.cell), objects);
+    CellCosts costs = estimator_.cell_costs(cells_.chain(region.cell), objects);
     const double bound_ms = estimator_.region_bound(costs, region.interval).predicted_ms;
     const std::vector<Box> parts = cells_.parts(region.cell);
     const std::vector<double> sums = volume_sums(parts);

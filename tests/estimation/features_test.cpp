@@ -8,6 +8,7 @@
 
 #include "estimation/feature_table.h"
 #include "render/base/error.h"
+#include "render/view/direction_interval.h"
 #include "small_scenes.h"
 
 namespace standin {
@@ -285,6 +286,55 @@ TEST(Bound, IsNeverBelowAnEstimateFromItsBox) {
     }
   }
   EXPECT_GT(seen, 10000);
+}
+
+// Over the views of one region: between an estimate in it and the bound for any direction, and no more for fewer eyes.
+TEST(Bound, OfAGazeLiesBetweenItsViewsAndAnyDirection) {
+  int seen = 0, sharper = 0;
+  for (std::uint64_t seed = 0; seed < 60; ++seed) {
+    Rng rng(seed, 8);
+    const Scene scene = random_scene(rng);
+    Camera camera;
+    camera.fov_y_rad = rng.uniform(0.2, 2.4);
+    const FeatureTable table(scene, camera);
+    for (int i = 0; i < 100; ++i) {
+      const auto object = static_cast<std::uint32_t>(rng.below(scene.objects.size()));
+      const Box& bounds = scene.objects[object].bounds;
+      const Vec3 eye = bounds.centre() + std::pow(10.0, rng.uniform(-3.0, 2.0)) * random_unit(rng);
+      const Vec3 towards = bounds.centre() - eye + 2.0 * glm::length(bounds.centre() - eye) * rng.uniform() * random_unit(rng);
+      const View view{eye, glm::normalize(towards)};
+      const Box eyes = box_around(eye, rng), more_eyes = larger(eyes, rng);
+      const DirectionCone cone = enclosing_cone(interval_of(view.direction, static_cast<int>(rng.below(6))), camera);
+      const Features estimate = table.estimate(object, PreparedView(view, camera));
+      const Features of_gaze = table.bound(table.from_box(object, eyes), Gaze(cone, eyes, camera));
+      const Features of_larger = table.bound(table.from_box(object, more_eyes), Gaze(cone, more_eyes, camera));
+      const Features of_any = table.bound(object, eyes);
+      seen += estimate[Term::kOnScreenTriangles] > 0.0 ? 1 : 0;
+      sharper += of_gaze[Term::kEdgePixels] < 0.99 * of_any[Term::kEdgePixels] ? 1 : 0;
+      for (std::size_t t = 0; t < kTermCount; ++t) {
+        ASSERT_LE(estimate.value[t], of_gaze.value[t]) << term_name(static_cast<Term>(t)) << ", seed " << seed << ", view " << i;
+        ASSERT_LE(of_gaze.value[t], of_larger.value[t] * (1.0 + 1e-9)) << term_name(static_cast<Term>(t)) << ", seed " << seed;
+        ASSERT_LE(of_gaze.value[t], of_any.value[t] * (1.0 + 1e-9)) << term_name(static_cast<Term>(t)) << ", seed " << seed;
+      }
+    }
+  }
+  EXPECT_GT(seen, 2000);
+  EXPECT_GT(sharper, 1000);
+}
+
+// A ground of 100 x 100 m: looking along it sees a slice, away from it nothing.
+TEST(Bound, OfAGazeCountsThePartInFront) {
+  Scene scene;
+  add_object(scene, grid_mesh(50.0F, 40), Mat4(1.0), false);  // in the plane z = 0
+  const FeatureTable table(scene, kCamera);
+  const auto share = [&](double height_m, const Vec3& direction) {
+    const DirectionCone cone = enclosing_cone(interval_of(direction, 5), kCamera);
+    const Features bound = table.bound(table.from_box(0, eye_at(height_m)), Gaze(cone, eye_at(height_m), kCamera));
+    return bound[Term::kOnScreenTriangles] / bound[Term::kTriangles];
+  };
+  // 45 degrees of view and 2.8 of directions of all around; a patch nearer than its size counts wherever it is.
+  EXPECT_NEAR(share(1.7, {1.0, 0.02, -0.02}), 47.8 / 360.0, 0.05);
+  EXPECT_EQ(share(10.0, {0.01, 0.02, 1.0}), 0.0);
 }
 
 TEST(Bound, OfAFarFacingSquareIsItsImageAtTheCorner) {

@@ -111,7 +111,7 @@ TEST(Subdivision, FindsExactlyTheRegionsOverBudget) {
     std::size_t hot = 0;
     double highest = 0.0;
     for (const Cell& cell : found.cells) {
-      const CellCosts costs = estimator.cell_costs(cells.chain(cell.key), world.all());
+      CellCosts costs = estimator.cell_costs(cells.chain(cell.key), world.all());
       for (const DirectionInterval& interval : all_intervals(2)) {
         const RegionBound bound = estimator.region_bound(costs, interval);
         highest = std::max(highest, bound.predicted_ms);
@@ -200,10 +200,12 @@ TEST(Subdivision, NoChildIsBoundedAboveItsParent) {
     const CellKey child = key.child(static_cast<int>(rng.below(8)));
     if (cells.cell_box(child).empty()) continue;
     DirectionInterval interval{static_cast<Face>(rng.below(6)), 2, static_cast<int>(rng.below(4)), static_cast<int>(rng.below(4))};
-    const double parent_ms = estimator.region_bound(estimator.cell_costs(cells.chain(key), world.all()), interval.parent()).predicted_ms;
-    const double halved_cell_ms =
-        estimator.region_bound(estimator.cell_costs(cells.chain(child), world.all()), interval.parent()).predicted_ms;
-    const double child_ms = estimator.region_bound(estimator.cell_costs(cells.chain(child), world.all()), interval).predicted_ms;
+    CellCosts parent_costs = estimator.cell_costs(cells.chain(key), world.all());
+    CellCosts costs = estimator.cell_costs(cells.chain(child), world.all());
+    const double parent_ms = estimator.coarse_bound_ms(parent_costs, interval.parent());
+    const double halved_cell_ms = estimator.coarse_bound_ms(costs, interval.parent());
+    const double child_ms = estimator.region_bound(costs, interval).predicted_ms;
+    EXPECT_LE(child_ms, estimator.region_bound(parent_costs, interval).predicted_ms);
     EXPECT_LE(halved_cell_ms, parent_ms);
     EXPECT_LE(child_ms, halved_cell_ms);
     ++compared;
@@ -305,12 +307,12 @@ TEST(Subdivision, TheSmallerLinearFormIsChosen) {
   const double most_pixel_ms = model.most_pixel_ms(estimator.features().pixel_terms(), estimator.features().most_passed_pixels());
   std::size_t capped = 0;
   for (const Cpv& cpv : found.cpvs) {
-    const CellCosts costs = estimator.cell_costs(cells.chain(found.cells[cpv.cell].key), world.all());
-    const auto seen = found.terms_of(cpv);  // a draw costs something: every seen object has a term
-    RegionSums sums = estimator.empty_frame();
-    for (const ObjectCost& object : costs.objects)
-      if (std::any_of(seen.begin(), seen.end(), [&](const RegionTerm& term) { return term.object == object.object; }))
-        sums.add(object.cost);
+    CellCosts costs = estimator.cell_costs(cells.chain(found.cells[cpv.cell].key), world.all());
+    std::vector<std::uint32_t> seen;  // a draw costs something: every seen object has a term
+    for (const RegionTerm& term : found.terms_of(cpv))
+      seen.push_back(
+          static_cast<std::uint32_t>(std::ranges::find(costs.objects, term.object, &ObjectCost::object) - costs.objects.begin()));
+    const RegionSums sums = estimator.sums_of(costs, found.intervals[cpv.interval], seen);
     EXPECT_EQ(cpv.pixels_capped, sums.capped_ms < sums.with_pixels_ms);
     EXPECT_EQ(cpv.predicted_ms, std::min(sums.capped_ms, sums.with_pixels_ms));
     EXPECT_NEAR(cpv.constant_ms, model.milliseconds_per_unit[0] + (cpv.pixels_capped ? most_pixel_ms : 0.0), 1e-12);
