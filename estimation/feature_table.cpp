@@ -115,23 +115,41 @@ PartSum most_from_box(const std::vector<SurfaceSample>& samples, const PlacedMes
   return sum;
 }
 
-std::vector<ObjectFromBox::Sample> samples_from_box(const std::vector<SurfaceSample>& samples, const PlacedMesh& mesh,
-                                                    const PartStyle& style, const ProjectionFromBox& projection, const Box& eyes) {
-  std::vector<ObjectFromBox::Sample> result;
-  for (const SurfaceSample& sample : samples) {
-    const Patch patch = mesh.place(sample);
-    const MostInImage most = projection.most(patch, style.double_sided);
-    if (most.faces) result.push_back({most, Bearing(patch.centre, most.reach_m, eyes), sample.triangles});
+ObjectFromBox::Group group_of(std::vector<ObjectFromBox::Sample> samples) {
+  ObjectFromBox::Group group;
+  Box bounds;
+  for (const auto& sample : samples) bounds.extend(sample.bearing.point);
+  group.centre = bounds.centre();
+  for (const auto& sample : samples)
+    group.radius_m = std::max(group.radius_m, glm::length(sample.bearing.point - group.centre) + sample.bearing.reach_m);
+  group.samples = std::move(samples);
+  return group;
+}
+
+std::vector<ObjectFromBox::Group> groups_from_box(std::span<const SurfaceSample> samples, const PlacedMesh& mesh, const PartStyle& style,
+                                                  const ProjectionFromBox& projection, const Box& eyes) {
+  std::vector<ObjectFromBox::Group> groups;
+  for (std::size_t first = 0; first < samples.size(); first += kSampleGroup) {
+    std::vector<ObjectFromBox::Sample> facing;
+    for (const SurfaceSample& sample : samples.subspan(first, std::min(kSampleGroup, samples.size() - first))) {
+      const Patch patch = mesh.place(sample);
+      const MostInImage most = projection.most(patch, style.double_sided);
+      if (most.faces) facing.push_back({most, Bearing(patch.centre, most.reach_m, eyes), sample.triangles});
+    }
+    if (!facing.empty()) groups.push_back(group_of(std::move(facing)));
   }
-  return result;
+  return groups;
 }
 
 /// The most that samples may show to any view of a gaze.
-PartSum most_in_gaze(const std::vector<ObjectFromBox::Sample>& samples, PixelKind kind, const Gaze& gaze, double cos_corner) {
+PartSum most_in_gaze(const std::vector<ObjectFromBox::Group>& groups, PixelKind kind, const Gaze& gaze, double cos_corner) {
   PartSum sum;
-  for (const ObjectFromBox::Sample& sample : samples)
-    if (const auto least_cosine = gaze.least_cosine(sample.bearing))
-      sum.add(sample.most, std::max(1.0, *least_cosine / cos_corner), kind, sample.triangles);
+  for (const ObjectFromBox::Group& group : groups) {
+    if (!gaze.may_see(group.centre, group.radius_m)) continue;
+    for (const ObjectFromBox::Sample& sample : group.samples)
+      if (const auto least_cosine = gaze.least_cosine(sample.bearing))
+        sum.add(sample.most, std::max(1.0, *least_cosine / cos_corner), kind, sample.triangles);
+  }
   return sum;
 }
 
@@ -236,8 +254,8 @@ ObjectFromBox FeatureTable::from_box(std::uint32_t object, const Box& eyes) cons
     const Part& part = scene_->parts[p];
     const PartStyle style = style_of(*scene_, part);
     const SurfaceSamples& samples = samples_[part.mesh];
-    result.parts.push_back({style.kind, samples.slenderness, samples_from_box(samples.samples, mesh, style, projection, eyes), {}});
-    if (maybe_near) result.parts.back().near_samples = samples_from_box(samples.near_samples, mesh, style, projection, eyes);
+    result.parts.push_back({style.kind, samples.slenderness, groups_from_box(samples.samples, mesh, style, projection, eyes), {}});
+    if (maybe_near) result.parts.back().near_samples = groups_from_box(samples.near_samples, mesh, style, projection, eyes);
   }
   return result;
 }

@@ -28,11 +28,17 @@ struct ObjectFromBox {
     Bearing bearing;
     double triangles = 0.0;
   };
+  /// Samples that face some eye and lie within a sphere.
+  struct Group {
+    Vec3 centre{0.0};
+    double radius_m = 0.0;
+    std::vector<Sample> samples;
+  };
   struct Part {
     PixelKind kind = PixelKind::kPlain;
     double slenderness = 0.0;
-    std::vector<Sample> samples;  // those that face some eye
-    std::vector<Sample> near_samples;
+    std::vector<Group> samples;
+    std::vector<Group> near_samples;
   };
   Features counts;  // draws, triangles: the same for every view
   std::vector<Part> parts;

@@ -31,11 +31,13 @@ Gaze::Gaze(const DirectionCone& cone, const Box& eyes, const Camera& camera) : c
   cos_turn_ = std::cos(turn_rad), sin_turn_ = std::sin(turn_rad);
 }
 
+bool Gaze::may_see(const Vec3& point, double reach_m) const {
+  const double slack_m = reach_m + kRounding * (std::abs(point.x) + std::abs(point.y) + std::abs(point.z) + reach_m);
+  return std::ranges::all_of(sides_, [&](const Side& side) { return glm::dot(side.outward, point) <= side.most + slack_m; });
+}
+
 std::optional<double> Gaze::least_cosine(const Bearing& patch) const {
-  for (const Side& side : sides_) {
-    const double beyond = glm::dot(side.outward, patch.point) - side.most - patch.reach_m;
-    if (beyond > kRounding * (std::abs(patch.point.x) + std::abs(patch.point.y) + std::abs(patch.point.z))) return std::nullopt;
-  }
+  if (!may_see(patch.point, patch.reach_m)) return std::nullopt;
   double cos_off = 1.0;  // from the axis
   for (const Vec3& line : patch.from_corners) cos_off = std::min(cos_off, glm::dot(line, cone_->axis));
   if (cos_off <= cos_corner_) return cos_corner_;

@@ -30,6 +30,8 @@ struct Bearing {
 class Gaze {
  public:
   Gaze(const DirectionCone& cone, const Box& eyes, const Camera& camera);
+  /// False only if no view sees anything within `reach_m` of the point.
+  [[nodiscard]] bool may_see(const Vec3& point, double reach_m) const;
   /// Of all views that see a part of the patch: the least cosine of the angle at which they do. nullopt: no view sees it.
   [[nodiscard]] std::optional<double> least_cosine(const Bearing& patch) const;
 

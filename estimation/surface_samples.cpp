@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 namespace standin {
 namespace {
@@ -72,6 +73,19 @@ void scale_to(const Totals& totals, std::vector<SurfaceSample>& samples) {
   }
 }
 
+// Halves at the median of the longest side, each time at a whole number of groups.
+void group(std::span<SurfaceSample> samples) {
+  if (samples.size() <= kSampleGroup) return;
+  Box bounds;
+  for (const SurfaceSample& sample : samples) bounds.extend(sample.point);
+  const Vec3 size = bounds.size();
+  const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+  const std::size_t half = (samples.size() / kSampleGroup + 1) / 2 * kSampleGroup;
+  std::ranges::stable_sort(samples, {}, [axis](const SurfaceSample& sample) { return sample.point[axis]; });
+  group(samples.first(half));
+  group(samples.subspan(half));
+}
+
 std::vector<SurfaceSample> draw_samples(const Mesh& mesh, const Totals& totals, std::uint32_t count) {
   const auto importance_of = [&](const Triangle& triangle) {
     return 1.0 / totals.triangles + share(triangle.area_m2(), totals.area_m2) + share(triangle.edges_m(), totals.edges_m);
@@ -92,6 +106,7 @@ std::vector<SurfaceSample> draw_samples(const Mesh& mesh, const Totals& totals, 
     }
   }
   scale_to(totals, samples);
+  group(samples);
   return samples;
 }
 

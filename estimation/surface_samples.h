@@ -20,6 +20,7 @@ struct SurfaceSample {
   double triangles = 0.0;    // may be a fraction
 };
 
+/// Each run of kSampleGroup samples from the first lies close together, so that many can be judged by one sphere.
 struct SurfaceSamples {
   std::vector<SurfaceSample> samples;
   std::vector<SurfaceSample> near_samples;  // the same surface in more samples, for an eye so near that some fill the image
@@ -27,6 +28,7 @@ struct SurfaceSamples {
 };
 
 inline constexpr std::uint32_t kNearFactor = 16;
+inline constexpr std::size_t kSampleGroup = 16;
 /// `count` >= 1 samples and kNearFactor times as many near ones, each set adding up to the mesh's area, edges and triangles; none for a
 /// mesh without triangles.
 [[nodiscard]] SurfaceSamples sample_surface(const Mesh& mesh, std::uint32_t count);

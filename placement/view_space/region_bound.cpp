@@ -8,6 +8,8 @@
 namespace standin {
 namespace {
 
+// Of a region's cost for any direction.
+constexpr double kLeastShare = 0.002;
 // 393,216 cones; finer intervals hardly tighten a bound, whose cone is dominated by the field of view.
 constexpr int kDeepestLevel = 8;
 
@@ -106,18 +108,31 @@ Cost RegionEstimator::cost_in(CellCosts& cell, std::uint32_t index, const Gaze& 
   return {std::min(sharp.fixed_ms, any.cost.fixed_ms), std::min(sharp.pixel_ms, any.cost.pixel_ms)};
 }
 
-RegionSums RegionEstimator::sums_of(CellCosts& cell, const DirectionInterval& interval, std::span<const std::uint32_t> seen) const {
+// Those that together cost next to nothing are not worth a second look: most of a region's objects are among them.
+std::vector<Cost> RegionEstimator::costs_in(CellCosts& cell, const DirectionInterval& interval, std::span<const std::uint32_t> seen) const {
   const Gaze gaze(directions_.cone(interval), cell.chain.front(), features_.camera());
+  Cost all;
+  for (const std::uint32_t i : seen) all += cell.objects[i].cost;
+  const double least_ms = kLeastShare * (all.fixed_ms + all.pixel_ms);
+  std::vector<Cost> costs;
+  costs.reserve(seen.size());
+  for (const std::uint32_t i : seen) {
+    const Cost& any = cell.objects[i].cost;
+    costs.push_back(any.fixed_ms + any.pixel_ms < least_ms ? any : cost_in(cell, i, gaze));
+  }
+  return costs;
+}
+
+RegionSums RegionEstimator::sums_of(CellCosts& cell, const DirectionInterval& interval, std::span<const std::uint32_t> seen) const {
   RegionSums sums = empty_frame();
-  for (const std::uint32_t i : seen) sums.add(cost_in(cell, i, gaze));
+  for (const Cost& cost : costs_in(cell, interval, seen)) sums.add(cost);
   return sums;
 }
 
 RegionBound RegionEstimator::bound_of(CellCosts& cell, const DirectionInterval& interval, std::span<const std::uint32_t> seen) const {
-  const Gaze gaze(directions_.cone(interval), cell.chain.front(), features_.camera());
-  std::vector<Cost> costs;
+  const std::vector<Cost> costs = costs_in(cell, interval, seen);
   RegionSums sums = empty_frame();
-  for (const std::uint32_t i : seen) sums.add(costs.emplace_back(cost_in(cell, i, gaze)));
+  for (const Cost& cost : costs) sums.add(cost);
   RegionBound bound;
   bound.pixels_capped = sums.pixels_capped();
   bound.constant_ms = bound.pixels_capped ? empty_frame().capped_ms : empty_frame().with_pixels_ms;

@@ -1,6 +1,7 @@
 #include "placement/view_space/subdivision.h"
 
 #include <algorithm>
+#include <limits>
 #include <numeric>
 
 #include "placement/view_space/cell_boxes.h"
@@ -16,7 +17,11 @@ struct SearchedCell {
   Cell cell;
   std::vector<Box> chain;
   DirectionSearchResult found;
+  double parent_ms = std::numeric_limits<double>::infinity();  // its parent's worst bound
 };
+
+// Halving ends where it no longer lowers the worst bound by so much.
+constexpr double kLeastGain = 0.03;
 
 std::vector<DirectionInterval> used_intervals(const std::vector<SearchedCell>& searched) {
   std::vector<DirectionInterval> intervals;
@@ -88,7 +93,7 @@ class Subdivider {
   }
 
   [[nodiscard]] SearchedCell search(const CellKey& key, std::vector<Box> chain, std::int32_t visible_set) const {
-    SearchedCell searched{{key, chain.front(), visible_set, 0.0, {}}, std::move(chain), {}};
+    SearchedCell searched{{key, chain.front(), visible_set, 0.0, {}}, std::move(chain), {}, std::numeric_limits<double>::infinity()};
     CellCosts costs = costs_of(searched.cell, searched.chain);
     searched.found = search_directions(estimator_, costs, options_.predicted_budget_ms);
     searched.found.seen.shrink_to_fit();
@@ -128,6 +133,7 @@ class Subdivider {
       std::vector<Box> chain = {cell_boxes_.cell_box(tasks[i].key)};
       chain.insert(chain.end(), parent.chain.begin(), parent.chain.end());
       children[i] = search(tasks[i].key, std::move(chain), parent.cell.visible_set);
+      children[i].parent_ms = parent.cell.worst_predicted_ms;
     });
     return children;
   }
@@ -156,7 +162,8 @@ class Subdivider {
   // Cells that stay leaves move to `done`; returns the children of the others.
   [[nodiscard]] std::vector<SearchedCell> halve(std::vector<SearchedCell> frontier, std::vector<SearchedCell>& done) {
     const auto first_cold = std::stable_partition(frontier.begin(), frontier.end(), [this](const SearchedCell& searched) {
-      return !searched.found.hot.empty() && searched.cell.key.level < space_.finest_level;
+      return !searched.found.hot.empty() && searched.cell.key.level < space_.finest_level &&
+             searched.cell.worst_predicted_ms <= (1.0 - kLeastGain) * searched.parent_ms;
     });
     std::move(first_cold, frontier.end(), std::back_inserter(done));
     frontier.erase(first_cold, frontier.end());
