@@ -32,13 +32,14 @@ Gaze::Gaze(const DirectionCone& cone, const Box& eyes, const Camera& camera) : c
 }
 
 std::optional<double> Gaze::least_cosine(const Bearing& patch) const {
-  for (const Side& side : sides_) {
-    const double beyond = glm::dot(side.outward, patch.point) - side.most - patch.reach_m;
-    if (beyond > kRounding * (std::abs(patch.point.x) + std::abs(patch.point.y) + std::abs(patch.point.z))) return std::nullopt;
-  }
+  const double slack_m = kRounding * (std::abs(patch.point.x) + std::abs(patch.point.y) + std::abs(patch.point.z));
+  for (const Side& side : sides_)
+    if (glm::dot(side.outward, patch.point) - side.most - patch.reach_m > slack_m) return std::nullopt;
   double cos_off = 1.0;  // from the axis
-  for (const Vec3& line : patch.from_corners) cos_off = std::min(cos_off, glm::dot(line, cone_->axis));
-  if (cos_off <= cos_corner_) return cos_corner_;
+  for (const Vec3& line : patch.from_corners) {
+    cos_off = std::min(cos_off, glm::dot(line, cone_->axis));
+    if (cos_off <= cos_corner_) return cos_corner_;
+  }
   const double sin_off = std::sqrt(1.0 - cos_off * cos_off);
   // Both angles are less than a right one, so the sum's cosine falls with it; the same for the turn.
   const double cos_far = cos_off * patch.cos_reach - sin_off * patch.sin_reach;
