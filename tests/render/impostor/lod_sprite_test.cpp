@@ -200,8 +200,8 @@ TEST(LodSprite, WhatOnlyFarViewersSeeIsStillAnImpostor) {
   test::SmallScene scene;
   Material material = coloured({1, 1, 1, 1});
   material.double_sided = false;
-  scene.add_object(test::rectangle({-4, 5, 4}, {8, 0, 0}, {0, 0, -8}), material);    // faces +y
-  scene.add_object(test::rectangle({-4, -5, -4}, {8, 0, 0}, {0, 0, 8}), material);   // faces -y
+  scene.add_object(test::rectangle({-4, 5, 4}, {8, 0, 0}, {0, 0, -8}), material);   // faces +y
+  scene.add_object(test::rectangle({-4, -5, -4}, {8, 0, 0}, {0, 0, 8}), material);  // faces -y
   Shaft shaft = shaft_frame(Vec3(0.0), glm::normalize(Vec3(0, 0.02, 1)));
   shaft.tan_half = Vec2(0.001);
   shaft.min_distance_m = 40.0;
