@@ -4,7 +4,8 @@
 // room for (screen_coverage.h). A bound for all views from a box sums the greatest value of each of these terms over the box, sample by
 // sample: every part of a large object counts at its own distance, and what faces away from the whole box not at all. Told in which
 // interval of directions the views look (gaze.h), it leaves out the samples that none of them sees. So bound >= estimate holds term by
-// term, and neither a smaller box nor fewer directions ever have a larger bound.
+// term, and a smaller box never has a larger bound (but for rounding, where directions are told). Fewer directions may: the enclosing
+// frustum of a part of an interval does not lie wholly in that of the whole.
 #pragma once
 
 #include <span>

@@ -39,8 +39,10 @@ bool Gaze::may_see(const Vec3& point, double reach_m) const {
 std::optional<double> Gaze::least_cosine(const Bearing& patch) const {
   if (!may_see(patch.point, patch.reach_m)) return std::nullopt;
   double cos_off = 1.0;  // from the axis
-  for (const Vec3& line : patch.from_corners) cos_off = std::min(cos_off, glm::dot(line, cone_->axis));
-  if (cos_off <= cos_corner_) return cos_corner_;
+  for (const Vec3& line : patch.from_corners) {
+    cos_off = std::min(cos_off, glm::dot(line, cone_->axis));
+    if (cos_off <= cos_corner_) return cos_corner_;
+  }
   const double sin_off = std::sqrt(1.0 - cos_off * cos_off);
   // Both angles are less than a right one, so the sum's cosine falls with it; the same for the turn.
   const double cos_far = cos_off * patch.cos_reach - sin_off * patch.sin_reach;

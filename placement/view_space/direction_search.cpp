@@ -56,7 +56,9 @@ class Search {
   }
 
   void take_leaf(const Node& leaf) {
-    const double predicted_ms = estimator_.sums_of(cell_, leaf.interval, leaf.seen).predicted_ms();
+    const auto sums = estimator_.sums_above(cell_, leaf.interval, leaf.seen, std::min(budget_ms_, result_.worst_predicted_ms));
+    if (!sums) return;
+    const double predicted_ms = sums->predicted_ms();
     if (predicted_ms > result_.worst_predicted_ms) {
       result_.worst_predicted_ms = predicted_ms;
       result_.worst_interval = leaf.interval;

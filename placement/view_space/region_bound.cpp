@@ -1,6 +1,7 @@
 #include "placement/view_space/region_bound.h"
 
 #include <algorithm>
+#include <numeric>
 #include <string>
 
 #include "render/base/error.h"
@@ -8,8 +9,8 @@
 namespace standin {
 namespace {
 
-// Of a region's cost for any direction.
-constexpr double kLeastShare = 0.002;
+// Sums in another order may differ by less, relatively.
+constexpr double kRounding = 1e-9;
 // 393,216 cones; finer intervals hardly tighten a bound, whose cone is dominated by the field of view.
 constexpr int kDeepestLevel = 8;
 
@@ -108,31 +109,33 @@ Cost RegionEstimator::cost_in(CellCosts& cell, std::uint32_t index, const Gaze& 
   return {std::min(sharp.fixed_ms, any.cost.fixed_ms), std::min(sharp.pixel_ms, any.cost.pixel_ms)};
 }
 
-// Those that together cost next to nothing are not worth a second look: most of a region's objects are among them.
-std::vector<Cost> RegionEstimator::costs_in(CellCosts& cell, const DirectionInterval& interval, std::span<const std::uint32_t> seen) const {
-  const Gaze gaze(directions_.cone(interval), cell.chain.front(), features_.camera());
-  Cost all;
-  for (const std::uint32_t i : seen) all += cell.objects[i].cost;
-  const double least_ms = kLeastShare * (all.fixed_ms + all.pixel_ms);
+// The dearest objects are looked at first: a few near ones mostly decide.
+std::optional<RegionSums> RegionEstimator::sums_above(CellCosts& cell, const DirectionInterval& interval,
+                                                      std::span<const std::uint32_t> seen, double predicted_ms) const {
   std::vector<Cost> costs;
-  costs.reserve(seen.size());
-  for (const std::uint32_t i : seen) {
-    const Cost& any = cell.objects[i].cost;
-    costs.push_back(any.fixed_ms + any.pixel_ms < least_ms ? any : cost_in(cell, i, gaze));
-  }
-  return costs;
-}
-
-RegionSums RegionEstimator::sums_of(CellCosts& cell, const DirectionInterval& interval, std::span<const std::uint32_t> seen) const {
   RegionSums sums = empty_frame();
-  for (const Cost& cost : costs_in(cell, interval, seen)) sums.add(cost);
+  for (const std::uint32_t i : seen) sums.add(costs.emplace_back(cell.objects[i].cost));
+  std::vector<std::uint32_t> dearest(seen.size());
+  std::iota(dearest.begin(), dearest.end(), 0U);
+  std::ranges::stable_sort(dearest, std::ranges::greater(), [&](std::uint32_t k) { return costs[k].fixed_ms + costs[k].pixel_ms; });
+  const Gaze gaze(directions_.cone(interval), cell.chain.front(), features_.camera());
+  for (const std::uint32_t k : dearest) {
+    if (sums.predicted_ms() <= (1.0 - kRounding) * predicted_ms) return std::nullopt;
+    const Cost sharp = cost_in(cell, seen[k], gaze);
+    sums.add({sharp.fixed_ms - costs[k].fixed_ms, sharp.pixel_ms - costs[k].pixel_ms});
+    costs[k] = sharp;
+  }
+  sums = empty_frame();
+  for (const Cost& cost : costs) sums.add(cost);
+  if (sums.predicted_ms() <= predicted_ms) return std::nullopt;
   return sums;
 }
 
 RegionBound RegionEstimator::bound_of(CellCosts& cell, const DirectionInterval& interval, std::span<const std::uint32_t> seen) const {
-  const std::vector<Cost> costs = costs_in(cell, interval, seen);
+  const Gaze gaze(directions_.cone(interval), cell.chain.front(), features_.camera());
+  std::vector<Cost> costs;
   RegionSums sums = empty_frame();
-  for (const Cost& cost : costs) sums.add(cost);
+  for (const std::uint32_t i : seen) sums.add(costs.emplace_back(cost_in(cell, i, gaze)));
   RegionBound bound;
   bound.pixels_capped = sums.pixels_capped();
   bound.constant_ms = bound.pixels_capped ? empty_frame().capped_ms : empty_frame().with_pixels_ms;

@@ -5,8 +5,8 @@
 // face. Its cost bound is that of the cell's own box (the least over the chain: a smaller box never has a larger one). Child
 // regions are therefore never bounded above their parents, object by object.
 //
-// That cost holds for any direction, cheaply, and is what the search prunes by. In a leaf region that it leaves, the objects that cost most
-// are looked at again, sample by sample (estimation/gaze.h): what of them no view of the region sees costs nothing.
+// That cost holds for any direction, cheaply, and is what the search prunes by. Of a leaf region that it leaves, every object is looked at
+// again, sample by sample (estimation/gaze.h): what of it no view of the region sees costs nothing.
 //
 // Pixel work saturates (screen_coverage.h), so a region has two linear bounds: all terms with their pixels, or terms without and as many of
 // the costliest pixels as can pass. The smaller is chosen.
@@ -89,8 +89,9 @@ class RegionEstimator {
   [[nodiscard]] RegionBound region_bound(CellCosts& cell, const DirectionInterval& interval) const;
   /// The same from the objects already known to be seen (indices into cell.objects, ascending).
   [[nodiscard]] RegionBound bound_of(CellCosts& cell, const DirectionInterval& interval, std::span<const std::uint32_t> seen) const;
-  /// Its sums alone.
-  [[nodiscard]] RegionSums sums_of(CellCosts& cell, const DirectionInterval& interval, std::span<const std::uint32_t> seen) const;
+  /// The bound's sums where it exceeds `predicted_ms`, else nothing: cheaper, as most regions need not be summed up to the end.
+  [[nodiscard]] std::optional<RegionSums> sums_above(CellCosts& cell, const DirectionInterval& interval,
+                                                     std::span<const std::uint32_t> seen, double predicted_ms) const;
   /// Not less than region_bound(), and cheap.
   [[nodiscard]] double coarse_bound_ms(const CellCosts& cell, const DirectionInterval& interval) const;
 
@@ -100,7 +101,6 @@ class RegionEstimator {
 
  private:
   [[nodiscard]] std::vector<std::uint32_t> seen_in(const CellCosts& cell, const DirectionInterval& interval) const;
-  [[nodiscard]] std::vector<Cost> costs_in(CellCosts& cell, const DirectionInterval& interval, std::span<const std::uint32_t> seen) const;
   [[nodiscard]] Cost cost_in(CellCosts& cell, std::uint32_t index, const Gaze& gaze) const;
 
   const Scene* scene_;

@@ -144,7 +144,7 @@ std::vector<SurfaceTriangle> visible_surface(const Scene& scene, const std::vect
   std::vector<SurfaceTriangle> visible;
   for (std::size_t i = 0; i < surface.size(); ++i)
     if (seen[i]) visible.push_back(surface[i]);
-  return visible;
+  return visible.empty() ? surface : visible;
 }
 
 }  // namespace standin

@@ -12,7 +12,8 @@
 
 namespace standin {
 
-/// The triangles of `surface` that are seen, in order. `frame`: of the impostor, whose texels' size it goes by.
+/// The triangles of `surface` that are seen, in order; all where none is, so that there is something to show to who sees any. `frame`: of
+/// the impostor, whose texels' size it goes by.
 [[nodiscard]] std::vector<SurfaceTriangle> visible_surface(const Scene& scene, const std::vector<SurfaceTriangle>& surface,
                                                            const ViewCell& cell, const ImpostorFrame& frame, const WorkBudget& budget = {});
 

@@ -94,8 +94,10 @@ json causes_json(const World& world, const Subdivision& subdivision, const TimeM
   for (const auto p : slowest_cpv_per_cell(subdivision)) {
     const Cpv& cpv = subdivision.cpvs[p];
     const Box& box = subdivision.cells[cpv.cell].box;
+    const DirectionCone cone = enclosing_cone(subdivision.intervals[cpv.interval], world.camera);
+    const Gaze gaze(cone, box, world.camera);
     for (const auto& term : subdivision.terms_of(cpv)) {
-      shares.add(table.bound(term.object, box), model, cpv.pixels_capped);
+      shares.add(table.bound(table.from_box(term.object, box), gaze), model, cpv.pixels_capped);
       by_object[term.object] += term.predicted_ms;
     }
     if (cpv.pixels_capped) shares.pixels_ms += model.most_pixel_ms(table.pixel_terms(), table.most_passed_pixels());

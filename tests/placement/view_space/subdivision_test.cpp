@@ -218,12 +218,20 @@ TEST(Subdivision, HotCellsAreHalvedAndColdOnesKept) {
   const TimeModel model = test::triangle_time_model();
   const double worst = world.subdivide_for(1e9, model).worst_predicted_ms;
   const Subdivision found = world.subdivide_for(0.8 * worst, model);
+  const RegionEstimator estimator = world.estimator(model);
+  const CellBoxes cells(world.space);
   std::set<std::uint32_t> hot;
   for (const Cpv& cpv : found.cpvs) hot.insert(cpv.cell);
   std::set<int> levels;
   for (std::uint32_t cell = 0; cell < found.cells.size(); ++cell) {
     levels.insert(found.cells[cell].key.level);
-    EXPECT_TRUE(!hot.contains(cell) || found.cells[cell].key.level == world.space.finest_level);
+    if (hot.contains(cell) && found.cells[cell].key.level < world.space.finest_level) {  // halving did not pay any more
+      CellCosts parent = estimator.cell_costs(cells.chain(found.cells[cell].key.parent()), world.all());
+      double parent_ms = 0.0;
+      for (const DirectionInterval& interval : all_intervals(estimator.directions().leaf_level()))
+        parent_ms = std::max(parent_ms, estimator.region_bound(parent, interval).predicted_ms);
+      EXPECT_GT(found.cells[cell].worst_predicted_ms, 0.97 * parent_ms);
+    }
     EXPECT_EQ(found.cells[cell].box, world.space.cell_box(found.cells[cell].key));
     EXPECT_TRUE(cell == 0 || found.cells[cell - 1].key < found.cells[cell].key);
   }
@@ -312,7 +320,7 @@ TEST(Subdivision, TheSmallerLinearFormIsChosen) {
     for (const RegionTerm& term : found.terms_of(cpv))
       seen.push_back(
           static_cast<std::uint32_t>(std::ranges::find(costs.objects, term.object, &ObjectCost::object) - costs.objects.begin()));
-    const RegionSums sums = estimator.sums_of(costs, found.intervals[cpv.interval], seen);
+    const RegionSums sums = estimator.sums_above(costs, found.intervals[cpv.interval], seen, -1.0).value();
     EXPECT_EQ(cpv.pixels_capped, sums.capped_ms < sums.with_pixels_ms);
     EXPECT_EQ(cpv.predicted_ms, std::min(sums.capped_ms, sums.with_pixels_ms));
     EXPECT_NEAR(cpv.constant_ms, model.milliseconds_per_unit[0] + (cpv.pixels_capped ? most_pixel_ms : 0.0), 1e-12);

@@ -195,6 +195,19 @@ TEST(LodSprite, BacksHideNothing) {
   EXPECT_EQ(baked(scene.scene, shaft_towards_z(0.2, 30.0)).mesh.triangle_count(), 2U);
 }
 
+// Two boards at the back of each other: near viewers are between their planes, only those far off see the upper one's face.
+TEST(LodSprite, WhatOnlyFarViewersSeeIsStillAnImpostor) {
+  test::SmallScene scene;
+  Material material = coloured({1, 1, 1, 1});
+  material.double_sided = false;
+  scene.add_object(test::rectangle({-4, 5, 4}, {8, 0, 0}, {0, 0, -8}), material);   // faces +y
+  scene.add_object(test::rectangle({-4, -5, -4}, {8, 0, 0}, {0, 0, 8}), material);  // faces -y
+  Shaft shaft = shaft_frame(Vec3(0.0), glm::normalize(Vec3(0, 0.02, 1)));
+  shaft.tan_half = Vec2(0.001);
+  shaft.min_distance_m = 40.0;
+  EXPECT_GT(baked(scene.scene, shaft).mesh.triangle_count(), 0U);
+}
+
 TEST(LodSprite, PlainTrianglesOfOneColourShareATexel) {
   test::SmallScene scene;
   for (int i = 0; i < 6; ++i)
