@@ -145,9 +145,10 @@ std::vector<ObjectFromBox::Group> groups_from_box(std::span<const SurfaceSample>
 PartSum most_in_gaze(const std::vector<ObjectFromBox::Group>& groups, PixelKind kind, const Gaze& gaze, double cos_corner) {
   PartSum sum;
   for (const ObjectFromBox::Group& group : groups) {
-    if (!gaze.may_see(group.centre, group.radius_m)) continue;
+    const auto planes = gaze.planes_across(group.centre, group.radius_m);
+    if (!planes) continue;
     for (const ObjectFromBox::Sample& sample : group.samples)
-      if (const auto least_cosine = gaze.least_cosine(sample.bearing))
+      if (const auto least_cosine = gaze.least_cosine(sample.bearing, *planes))
         sum.add(sample.most, std::max(1.0, *least_cosine / cos_corner), kind, sample.triangles);
   }
   return sum;

@@ -31,13 +31,21 @@ Gaze::Gaze(const DirectionCone& cone, const Box& eyes, const Camera& camera) : c
   cos_turn_ = std::cos(turn_rad), sin_turn_ = std::sin(turn_rad);
 }
 
-bool Gaze::may_see(const Vec3& point, double reach_m) const {
-  const double slack_m = reach_m + kRounding * (std::abs(point.x) + std::abs(point.y) + std::abs(point.z) + reach_m);
-  return std::ranges::all_of(sides_, [&](const Side& side) { return glm::dot(side.outward, point) <= side.most + slack_m; });
+std::optional<std::uint32_t> Gaze::planes_across(const Vec3& centre, double radius_m) const {
+  const double reach_m = radius_m + kRounding * (std::abs(centre.x) + std::abs(centre.y) + std::abs(centre.z) + radius_m);
+  std::uint32_t across = 0;
+  for (std::size_t i = 0; i < sides_.size(); ++i) {
+    const double beyond_m = glm::dot(sides_[i].outward, centre) - sides_[i].most;
+    if (beyond_m > reach_m) return std::nullopt;
+    if (beyond_m > -reach_m) across |= 1U << i;
+  }
+  return across;
 }
 
-std::optional<double> Gaze::least_cosine(const Bearing& patch) const {
-  if (!may_see(patch.point, patch.reach_m)) return std::nullopt;
+std::optional<double> Gaze::least_cosine(const Bearing& patch, std::uint32_t planes) const {
+  const double reach_m = patch.reach_m + kRounding * (std::abs(patch.point.x) + std::abs(patch.point.y) + std::abs(patch.point.z));
+  for (std::size_t i = 0; i < sides_.size() && (planes >> i) != 0; ++i)
+    if ((planes >> i & 1U) != 0 && glm::dot(sides_[i].outward, patch.point) > sides_[i].most + reach_m) return std::nullopt;
   double cos_off = 1.0;  // from the axis
   for (const Vec3& line : patch.from_corners) {
     cos_off = std::min(cos_off, glm::dot(line, cone_->axis));

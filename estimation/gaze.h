@@ -9,6 +9,7 @@
 
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <optional>
 
 #include "render/view/enclosing_region.h"
@@ -30,10 +31,11 @@ struct Bearing {
 class Gaze {
  public:
   Gaze(const DirectionCone& cone, const Box& eyes, const Camera& camera);
-  /// False only if no view sees anything within `reach_m` of the point.
-  [[nodiscard]] bool may_see(const Vec3& point, double reach_m) const;
+  /// Which planes of the enclosing frustum a sphere crosses, a bit each. nullopt: no view sees anything in it.
+  [[nodiscard]] std::optional<std::uint32_t> planes_across(const Vec3& centre, double radius_m) const;
   /// Of all views that see a part of the patch: the least cosine of the angle at which they do. nullopt: no view sees it.
-  [[nodiscard]] std::optional<double> least_cosine(const Bearing& patch) const;
+  /// `planes`: those that may cut it off.
+  [[nodiscard]] std::optional<double> least_cosine(const Bearing& patch, std::uint32_t planes = ~0U) const;
 
  private:
   struct Side {
@@ -41,7 +43,7 @@ class Gaze {
     double most = 0.0;  // dot(outward, p) of a point seen
   };
   const DirectionCone* cone_;
-  std::vector<Side> sides_;
+  std::vector<Side> sides_;     // at most 15: in front, six faces of boxes, eight of the roll-free camera
   double cos_corner_;           // of the image's half diagonal
   double cos_turn_, sin_turn_;  // of half the interval, corner to axis
 };
