@@ -67,6 +67,11 @@ void MeshBuilder::triangle(const Vec3& a, const Vec3& b, const Vec3& c) {
   mesh_.indices.push_back(vertex(c, normal, {0.5, 0.0}));
 }
 
+void MeshBuilder::level_triangle(const Vec3& a, const Vec3& b, const Vec3& c, double repeats_per_m) {
+  const Vec3 normal = unit_or_up(glm::cross(b - a, c - a));
+  for (const Vec3& p : {a, b, c}) mesh_.indices.push_back(vertex(p, normal, {p.x * repeats_per_m, p.z * repeats_per_m}));
+}
+
 void MeshBuilder::box(const Vec3& low, const Vec3& high, int n) {
   const auto at = [&](int i) { return Box{low, high}.corner(i); };
   patch(at(4), at(5), at(7), at(6), n, n);

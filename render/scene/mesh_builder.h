@@ -30,6 +30,8 @@ class MeshBuilder {
   /// Flat quadrilateral a b c d; texture u runs along ab, v from d (top) to a (bottom).
   void patch(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, int nu = 1, int nv = 1, const UvRect& uv = {});
   void triangle(const Vec3& a, const Vec3& b, const Vec3& c);
+  /// A level triangle whose texture lies fixed in the plane, `repeats_per_m` to a metre.
+  void level_triangle(const Vec3& a, const Vec3& b, const Vec3& c, double repeats_per_m);
   /// Five faces (no bottom), `n` x `n` cells each: 10 n^2 triangles.
   void box(const Vec3& low, const Vec3& high, int n = 1);
   /// Smooth surface of revolution about the y axis through `foot`; 2 * segments * (rings - 1) triangles.

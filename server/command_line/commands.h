@@ -31,6 +31,8 @@ struct CommandArguments {
   std::uint32_t quality_views = 50;   // bake; 0: its image metrics are left out
   std::uint32_t city_objects = 5287;
   std::uint64_t city_triangles = 10'400'000;
+  std::string osm;                   // make-city: folder of vector tiles; empty: a generated city
+  std::string furniture;             // make-city --osm: folder of unpacked catalogues
   std::uint32_t judged_views = 500;  // verify
   bool json = false;
   bool explain = false;

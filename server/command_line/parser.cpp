@@ -98,9 +98,19 @@ struct Grammar {
 };
 
 void add_input_commands(Grammar& grammar) {
-  auto city = grammar.command("make-city", "write a procedural test city");
-  city.app.add_option("--objects", city.arguments().city_objects, "objects, exactly (>= 16)");
-  city.app.add_option("--triangles", city.arguments().city_triangles, "drawn triangles, within 1 %");
+  auto city = grammar.command("make-city", "write a test city: a generated one, or a real one from a map");
+  city.app.add_option("--objects", city.arguments().city_objects, "objects, exactly (>= 16); of a real city, as many as have room")
+      ->capture_default_str();
+  city.app.add_option("--triangles", city.arguments().city_triangles, "drawn triangles, within 1 %; of a real city, at least")
+      ->capture_default_str();
+  auto* osm = city.app.add_option("--osm", city.arguments().osm,
+                                  "folder of OpenStreetMap vector tiles, ZOOM-COLUMN-ROW.mvt (npm @mapbox/mvt-fixtures, "
+                                  "real-world/osm-qa-astana): its densest 1.5 x 1.0 km (c) OpenStreetMap contributors, ODbL");
+  auto* furniture = city.app.add_option("--furniture", city.arguments().furniture,
+                                        "folder with the unpacked .sh3f catalogues of Debian's sweethome3d-furniture (trees, cars, lamps; "
+                                        "CC-BY and CC0, see their LICENSE.TXT)");
+  osm->needs(furniture);
+  furniture->needs(osm);
   city.spec_flags({"seed"});
   city.output("GLB file");
   city.run(make_city_command);

@@ -6,6 +6,7 @@
 #include "render/base/error.h"
 #include "render/scene/city.h"
 #include "render/scene/load.h"
+#include "render/scene/real_city.h"
 #include "server/command_line/commands.h"
 #include "server/job/world.h"
 
@@ -75,7 +76,10 @@ void print_info(const json& info) {
 
 int make_city_command(const CommandContext& context) {
   const auto& arguments = context.arguments;
-  const Scene city = make_city({arguments.city_objects, arguments.city_triangles, context.spec.seed});
+  const Scene city =
+      arguments.osm.empty()
+          ? make_city({arguments.city_objects, arguments.city_triangles, context.spec.seed})
+          : make_real_city({arguments.osm, arguments.furniture, arguments.city_objects, arguments.city_triangles, context.spec.seed});
   write_scene_glb(city, arguments.output);
   std::printf("%s: %zu objects, %llu triangles drawn\n", arguments.output.c_str(), city.objects.size(),
               static_cast<unsigned long long>(city.triangle_count()));
