@@ -257,13 +257,21 @@ class Survey {
     }
   }
 
+  // Every 100 m, and the end.
+  static std::vector<double> steps(double end_m) {
+    std::vector<double> result;
+    for (double at_m = 0.0; at_m < end_m; at_m += kStep_m) result.push_back(at_m);
+    result.push_back(end_m);
+    return result;
+  }
+
   // Of the boxes on a grid of 100 m the one whose buildings have the most floors in sum; the first of equals.
   [[nodiscard]] PlanBox densest() const {
     const Vec2 room = glm::max(all_.size() - kMapSize_m, Vec2(0.0));
     PlanBox best{all_.min, all_.min + kMapSize_m};
     double most = -1.0;
-    for (double y = 0.0; y <= room.y; y += kStep_m) {
-      for (double x = 0.0; x <= room.x; x += kStep_m) {
+    for (const double y : steps(room.y)) {
+      for (const double x : steps(room.x)) {
         const PlanBox box{all_.min + Vec2(x, y), all_.min + Vec2(x, y) + kMapSize_m};
         double floors = 0.0;
         for (const RawArea& raw : buildings_) {

@@ -14,7 +14,7 @@
 namespace standin {
 namespace {
 
-constexpr double kTile_m = 100.0;
+constexpr double kTile_m = 50.0;
 
 // Which of a kind's models stands where: whole rounds in which each has its weight's share, shuffled, so that any start of the list holds
 // about the shares that were asked for.
@@ -72,13 +72,14 @@ class RealCity {
   }
 
   Scene run() {
+    const std::vector<StreetModel> models = add_street_models(scene_, options_.furniture);
     add_ground();
     add_buildings();
     if (scene_.objects.size() > options_.objects) {
       throw Failure(ErrorWord::kBadUsage, "a city of " + std::to_string(options_.objects) +
                                               " objects: its ground and buildings alone are " + std::to_string(scene_.objects.size()));
     }
-    add_models();
+    place_models(models);
     update_derived(scene_);
     return std::move(scene_);
   }
@@ -115,9 +116,10 @@ class RealCity {
   void add_ground() {
     const Vec2 size = map_.bounds.size();
     for (double y = 0.0; y < size.y; y += kTile_m) {
+      const Ground row = ground_.within({{0.0, y}, {size.x, std::min(y + kTile_m, size.y)}});  // cutting the whole each time is slow
       for (double x = 0.0; x < size.x; x += kTile_m) {
         const PlanBox box{{x, y}, glm::min(Vec2(x, y) + kTile_m, size)};
-        add_own("ground_" + std::to_string(scene_.objects.size()), ground_tile(ground_, box), box.centre(), 0);
+        add_own("ground_" + std::to_string(scene_.objects.size()), ground_tile(row, box), box.centre(), 0);
       }
     }
   }
@@ -132,8 +134,7 @@ class RealCity {
     }
   }
 
-  void add_models() {
-    const std::vector<StreetModel> models = add_street_models(scene_, options_.furniture);
+  void place_models(const std::vector<StreetModel>& models) {
     const Spots spots = find_spots(map_, ground_, options_.seed);
     Rng rng(options_.seed, 902);
     const Deck trees(models, StreetModelKind::kTree, spots.trees.size(), rng);

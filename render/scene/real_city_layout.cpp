@@ -14,7 +14,7 @@ constexpr double kHouseStrip_m = 1.5;
 constexpr double kTreeClearance_m = 3.5;  // of walls
 constexpr double kTreeStep_m = 9.0;
 constexpr double kCarStep_m = 6.5;
-constexpr double kSmallStep_m = 12.0;
+constexpr double kSmallStep_m = 8.0;
 constexpr double kParkTree_m2 = 120.0;  // of green for each tree
 
 template <typename T>
@@ -160,7 +160,7 @@ class SpotFinder {
   Region edge_;
   Spacing trees_{5.0};
   Spacing cars_{6.0};
-  Spacing small_{8.0};
+  Spacing small_{5.0};
   Spots spots_;
 };
 

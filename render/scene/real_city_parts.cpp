@@ -10,8 +10,11 @@ namespace {
 
 constexpr double kTexture_m = 4.0;  // one repeat of a ground texture
 constexpr double kParapet_m = 0.6;
-constexpr double kRoofSlope = 0.55;  // rise over half the width
-constexpr double kMostGabledFloors = 2.0;
+constexpr double kRoofSlope = 0.55;        // rise over half the width
+constexpr double kMostGabledFloors = 2.0;  // and
+constexpr double kMostGabledWidth_m = 16.0;
+constexpr double kLeastBalconyFloors = 3.0;  // and
+constexpr double kLeastBalconyEdge_m = 9.0;
 constexpr double kShortestEdge_m = 0.01;
 
 Vec3 lifted(const Vec2& p, double height_m) {
@@ -51,8 +54,7 @@ class Extrusion {
   void add(const Polygon& polygon) {
     add_ring(with_inside_left(polygon.shell, false));
     for (const Path& hole : polygon.holes) add_ring(with_inside_left(hole, true));
-    const bool house = polygon.shell.size() == 4 && polygon.holes.empty() && floors_ <= kMostGabledFloors;
-    house ? add_gable(with_inside_left(polygon.shell, false)) : add_flat_roof(polygon);
+    gabled(polygon) ? add_gable(with_inside_left(polygon.shell, false)) : add_flat_roof(polygon);
   }
 
   [[nodiscard]] Model finish() {
@@ -61,6 +63,7 @@ class Extrusion {
     if (tiles_.triangle_count() > 0) model.parts.push_back({tiles_.finish("roof"), Surface::kRoof});
     if (roof_.triangle_count() > 0) model.parts.push_back({roof_.finish("flat_roof"), Surface::kPaving});
     if (trim_.triangle_count() > 0) model.parts.push_back({trim_.finish("parapet"), Surface::kTrim});
+    if (balconies_.triangle_count() > 0) model.parts.push_back({balconies_.finish("balconies"), Surface::kTrim});
     return model;
   }
 
@@ -70,11 +73,37 @@ class Extrusion {
       const double bays = std::max(1.0, std::round(glm::distance(a, b) / kBayWidth_m));
       const UvRect uv{{0.0, 0.0}, {bays / kFacadeBays, floors_ / kFacadeFloors}};
       add_wall(walls_, a, b, 0.0, eaves_m_, uv);
+      if (floors_ >= kLeastBalconyFloors && glm::distance(a, b) >= kLeastBalconyEdge_m) add_balconies(a, b, static_cast<int>(bays));
     });
   }
 
   void add_wall(MeshBuilder& builder, const Vec2& a, const Vec2& b, double low, double high, const UvRect& uv = {}) const {
     builder.patch(lifted(a - origin_, low), lifted(b - origin_, low), lifted(b - origin_, high), lifted(a - origin_, high), 1, 1, uv);
+  }
+
+  // Closed balconies, as houses there have: on every second bay of each floor but the ground floor.
+  void add_balconies(const Vec2& a, const Vec2& b, int bays) {
+    constexpr double kHeight_m = 1.1;
+    constexpr double kOut_m = 0.9;
+    const Vec2 bay = (b - a) / static_cast<double>(bays);
+    const Vec2 along = glm::normalize(b - a);
+    const Vec2 outward(-along.y, along.x);
+    for (int i = 1; i < bays; i += 2) {
+      const Vec2 left = a + static_cast<double>(i) * bay + 0.2 * along;
+      const Vec2 right = a + static_cast<double>(i + 1) * bay - 0.2 * along;
+      const std::array<Vec2, 4> corners{left, left + kOut_m * outward, right + kOut_m * outward, right};
+      for (double floor = 1.0; floor < floors_; floor += 1.0) {
+        const double foot_m = floor * kFloorHeight_m;
+        for (std::size_t c = 0; c < 3; ++c) add_wall(balconies_, corners[c], corners[c + 1], foot_m, foot_m + kHeight_m);
+        for (const double height_m : {foot_m, foot_m + kHeight_m}) add_slab(corners, height_m, height_m > foot_m);
+      }
+    }
+  }
+
+  void add_slab(const std::array<Vec2, 4>& corners, double height_m, bool faces_up) {
+    std::array<Vec3, 4> p{};
+    for (std::size_t c = 0; c < 4; ++c) p[c] = lifted(corners[faces_up ? c : 3 - c] - origin_, height_m);
+    balconies_.patch(p[0], p[1], p[2], p[3]);
   }
 
   void add_flat_roof(const Polygon& polygon) {
@@ -85,6 +114,18 @@ class Extrusion {
     };
     parapet(with_inside_left(polygon.shell, false));
     for (const Path& hole : polygon.holes) parapet(with_inside_left(hole, true));
+  }
+
+  [[nodiscard]] bool gabled(const Polygon& polygon) const {
+    const Path& ring = polygon.shell;
+    if (ring.size() != 4 || !polygon.holes.empty() || floors_ > kMostGabledFloors) return false;
+    const auto side = [&](std::size_t i) { return glm::distance(ring[i], ring[(i + 1) % 4]); };
+    if (std::min(side(0) + side(2), side(1) + side(3)) > 2.0 * kMostGabledWidth_m) return false;
+    const double area = signed_area(ring);
+    for (std::size_t i = 0; i < 4; ++i) {  // a corner that turns the other way: not convex
+      if (signed_area({ring[i], ring[(i + 1) % 4], ring[(i + 2) % 4]}) * area <= 0.0) return false;
+    }
+    return true;
   }
 
   // The ridge joins the middles of the two shorter opposite sides.
@@ -110,6 +151,7 @@ class Extrusion {
   MeshBuilder roof_;
   MeshBuilder tiles_;
   MeshBuilder trim_;
+  MeshBuilder balconies_;
 };
 
 // Where both ends lie on the same side of the box the next tile goes on, and there is no kerb.
@@ -142,6 +184,10 @@ void add_kerbs(MeshBuilder& builder, const Region& low, const PlanBox& box) {
 
 }  // namespace
 
+Ground Ground::within(const PlanBox& box) const {
+  return {asphalt.within(box), paving.within(box), grass.within(box), water.within(box)};
+}
+
 Model extruded_building(const Region& footprint, double floors, const Vec2& origin) {
   Extrusion building(floors, origin);
   for (const Polygon& polygon : footprint.polygons()) building.add(polygon);
@@ -149,17 +195,18 @@ Model extruded_building(const Region& footprint, double floors, const Vec2& orig
 }
 
 Model ground_tile(const Ground& ground, const PlanBox& box) {
+  const Ground part = ground.within(box);
   Model model;
   const auto add = [&](const Region& area, const char* name, Surface surface, double height_m, const std::vector<const Region*>& kerbs) {
     MeshBuilder builder;
-    add_flat(builder, area.within(box).triangles(), box.centre(), height_m);
-    for (const Region* low : kerbs) add_kerbs(builder, low->within(box), box);
+    add_flat(builder, area.triangles(), box.centre(), height_m);
+    for (const Region* low : kerbs) add_kerbs(builder, *low, box);
     if (builder.triangle_count() > 0) model.parts.push_back({builder.finish(name), surface});
   };
-  add(ground.asphalt, "carriageway", Surface::kAsphalt, 0.0, {});
-  add(ground.paving, "pavement", Surface::kPaving, kPavementHeight_m, {&ground.asphalt, &ground.water});
-  add(ground.grass, "grass", Surface::kGrass, kPavementHeight_m, {});
-  add(ground.water, "water", Surface::kGlass, 0.0, {});
+  add(part.asphalt, "carriageway", Surface::kAsphalt, 0.0, {});
+  add(part.paving, "pavement", Surface::kPaving, kPavementHeight_m, {&part.asphalt, &part.water});
+  add(part.grass, "grass", Surface::kGrass, kPavementHeight_m, {});
+  add(part.water, "water", Surface::kGlass, 0.0, {});
   return model;
 }
 

@@ -6,8 +6,8 @@
 
 namespace standin {
 
-/// Walls with the painted facade floor by floor, one roof over each polygon: gabled over quadrilaterals of up to two floors, else flat with
-/// a parapet. Coordinates are those of the plan minus `origin`.
+/// Walls with the painted facade floor by floor, balconies from three floors on, one roof over each polygon: gabled over narrow
+/// quadrilaterals of up to two floors, else flat with a parapet. Coordinates are those of the plan minus `origin`.
 [[nodiscard]] Model extruded_building(const Region& footprint, double floors, const Vec2& origin);
 
 /// Areas of the ground that do not overlap. Carriageways and water lie a kerb's height below the rest.
@@ -16,6 +16,8 @@ struct Ground {
   Region paving;
   Region grass;
   Region water;
+
+  [[nodiscard]] Ground within(const PlanBox& box) const;
 };
 
 /// The part of `ground` inside `box`, relative to the box's middle, with kerbs.
