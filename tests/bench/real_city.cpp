@@ -103,7 +103,10 @@ void draw(const Scene& scene, const std::filesystem::path& folder) {
 
 int main(int argc, char** argv) {
   if (argc < 2) return 2;
-  const Scene scene = load_scene(argv[1]);
+  LoadOptions whole;  // as it was made: trees in one piece
+  whole.split_triangles = 0;
+  whole.split_extent = 0.0;
+  const Scene scene = load_scene(argv[1], whole);
   tabulate(scene);
   if (argc > 2) draw(scene, argv[2]);
 }

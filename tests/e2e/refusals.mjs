@@ -27,6 +27,11 @@ const occupied = join(folder, "occupied");
 mkdirSync(occupied);
 writeFileSync(join(occupied, "thesis.txt"), "mine");
 
+const noTile = join(folder, "tiles");
+mkdirSync(noTile);
+writeFileSync(join(noTile, "12-1-2.mvt"), "<html>404</html>");
+const realCity = (osm) => ["make-city", "--osm", osm, "--furniture", inputs, "-o", join(out, "city.glb")];
+
 const place = (scene, ...more) => ["place", scene, "--target", target, "--budget-ms", "20", "-o", out, ...more];
 const placeFor = (targetFile) => ["place", city, "--target", targetFile, "--budget-ms", "20", "-o", out];
 const placeIn = (budget) => ["place", city, "--target", target, "--budget-ms", budget, "-o", out];
@@ -83,6 +88,11 @@ const kRows = [
   ["a technique left out between commas", place(city, "--techniques", "layered,,tdm"), 2, "bad_config", /--techniques.*one or more of/],
   ["objects that are not there", ["bake", city, "--objects", "7,150", "--view-cell", "shaft:1,0,0,45,60", "-o", out], 2, "bad_usage", /150/],
   ["a city too small to be one", ["make-city", "--objects", "3", "-o", join(out, "city.glb")], 2, "bad_usage", /3/],
+  ["a map without furniture", ["make-city", "--osm", inputs, "-o", join(out, "city.glb")], 2, "bad_usage", /--furniture/],
+  ["furniture without a map", ["make-city", "--furniture", inputs, "-o", join(out, "city.glb")], 2, "bad_usage", /--osm/],
+  ["a map that is not there", realCity(join(folder, "absent")), 2, "file_missing", /absent/],
+  ["a folder without tiles", realCity(inputs), 2, "file_missing", /no tile/],
+  ["a tile that is none", realCity(noTile), 2, "file_broken", /12-1-2\.mvt is not a vector tile/],
   ["a city in a folder that is not there", ["make-city", "--objects", "16", "--triangles", "4000", "-o", join(out, "no/city.glb")], 2, null, /city\.glb/],
 ];
 
