@@ -260,7 +260,7 @@ class Survey {
   // Every 100 m, and the end.
   static std::vector<double> steps(double end_m) {
     std::vector<double> result;
-    for (double at_m = 0.0; at_m < end_m; at_m += kStep_m) result.push_back(at_m);
+    for (int i = 0; i * kStep_m < end_m; ++i) result.push_back(i * kStep_m);
     result.push_back(end_m);
     return result;
   }

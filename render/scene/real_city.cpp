@@ -115,10 +115,11 @@ class RealCity {
 
   void add_ground() {
     const Vec2 size = map_.bounds.size();
-    for (double y = 0.0; y < size.y; y += kTile_m) {
+    for (int j = 0; j * kTile_m < size.y; ++j) {
+      const double y = j * kTile_m;
       const Ground row = ground_.within({{0.0, y}, {size.x, std::min(y + kTile_m, size.y)}});  // cutting the whole each time is slow
-      for (double x = 0.0; x < size.x; x += kTile_m) {
-        const PlanBox box{{x, y}, glm::min(Vec2(x, y) + kTile_m, size)};
+      for (int i = 0; i * kTile_m < size.x; ++i) {
+        const PlanBox box{{i * kTile_m, y}, glm::min(Vec2(i * kTile_m, y) + kTile_m, size)};
         add_own("ground_" + std::to_string(scene_.objects.size()), ground_tile(row, box), box.centre(), 0);
       }
     }

@@ -117,8 +117,8 @@ class SpotFinder {
     PlanBox box;
     for (const Polygon& polygon : part.polygons()) box.extend(polygon.shell);
     if (part.area_m2() < kParkTree_m2) return;
-    const double tries = box.size().x * box.size().y / kParkTree_m2;
-    for (double i = 0.0; i < tries; i += 1.0) {
+    const auto tries = static_cast<std::uint64_t>(std::ceil(box.size().x * box.size().y / kParkTree_m2));
+    for (std::uint64_t i = 0; i < tries; ++i) {
       const Vec2 p(rng_.uniform(box.min.x, box.max.x), rng_.uniform(box.min.y, box.max.y));
       if (part.contains(p)) offer_tree(p);
     }

@@ -92,7 +92,7 @@ class Extrusion {
       const Vec2 left = a + static_cast<double>(i) * bay + 0.2 * along;
       const Vec2 right = a + static_cast<double>(i + 1) * bay - 0.2 * along;
       const std::array<Vec2, 4> corners{left, left + kOut_m * outward, right + kOut_m * outward, right};
-      for (double floor = 1.0; floor < floors_; floor += 1.0) {
+      for (int floor = 1; floor < floors_; ++floor) {
         const double foot_m = floor * kFloorHeight_m;
         for (std::size_t c = 0; c < 3; ++c) add_wall(balconies_, corners[c], corners[c + 1], foot_m, foot_m + kHeight_m);
         for (const double height_m : {foot_m, foot_m + kHeight_m}) add_slab(corners, height_m, height_m > foot_m);

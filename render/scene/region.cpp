@@ -148,6 +148,7 @@ Region Region::around(const Path& line, double half_width_m) {
 
 Region Region::united(const std::vector<Region>& regions) {
   std::vector<GEOSGeometry*> parts;
+  parts.reserve(regions.size());
   for (const Region& region : regions) parts.push_back(GEOSGeom_clone_r(handle(), region.shape_->areas.get()));
   const Geometry all(
       checked(GEOSGeom_createCollection_r(handle(), GEOS_GEOMETRYCOLLECTION, parts.data(), static_cast<unsigned int>(parts.size()))));

@@ -47,7 +47,9 @@ std::map<std::string, std::string> read_properties(const fs::path& file) {
 // The entries of one catalogue that the city takes: "model#12=/scopia/van/van.obj" with "width#12=240.5", depth and height.
 void read_catalogue(const fs::path& file, std::map<std::string, Entry>& entries) {
   const std::map<std::string, std::string> properties = read_properties(file);
-  for (const auto& [key, path] : properties) {
+  for (const auto& property : properties) {
+    const std::string& key = property.first;
+    const std::string& path = property.second;
     const bool wanted = std::any_of(kStreetModels.begin(), kStreetModels.end(), [&](const StreetModelName& m) { return m.path == path; });
     if (!wanted || !key.starts_with("model#")) continue;
     const auto size_m = [&](const char* side) { return 0.01 * number_in(properties, side + key.substr(5), file); };
