@@ -207,7 +207,7 @@ void add_result_commands(Grammar& grammar) {
   check.run(check_command);
   verify.run(verify_command);
 
-  auto report = grammar.command("report", "write DIR/report.html again");
+  auto report = grammar.command("report", "write DIR/report.html again, of a placement, a survey or a sweep");
   report.folder();
   report.run(report_command);
 }

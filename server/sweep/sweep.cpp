@@ -11,6 +11,7 @@
 #include "server/job/place_at_budget.h"
 #include "server/job/placement_metrics.h"
 #include "server/job/survey_metrics.h"
+#include "server/job/unsolved.h"
 #include "server/report/sweep_report.h"
 #include "server/sweep/acceptance.h"
 #include "server/sweep/baseline.h"
@@ -95,8 +96,7 @@ SweptPoint sweep_budget(const Surveyed& job, JobSpec spec, double budget_ms, Bak
   const std::uint64_t baked_before = bakes.kept(), recalled_before = bakes.recalled();
   StageClock clock(budget);
   Placed placed;
-  placed.subdivision =
-      clock.run("view_space", [&] { return problem_views(job, job.target.model.predicted_budget_ms(budget_ms), budget); });
+  placed.subdivision = clock.run("view_space", [&] { return problem_views(job, job.target.model.predicted_budget_ms(budget_ms), budget); });
   place_at_budget(job, spec, placed, &bakes, clock, budget);
   SweptPoint swept{point_of(job, placed, budget_ms, clock.seconds()), {}};
   swept.numbers = to_json(swept.point);
@@ -106,6 +106,9 @@ SweptPoint sweep_budget(const Surveyed& job, JobSpec spec, double budget_ms, Bak
                         {"impostors_sha256", sha256_hex(placed.glb)},
                         {"stages_s", clock.seconds()},
                         {"left_out", clock.left_out()}});
+  if (!swept.point.met())
+    swept.numbers["unsolved_by_object"] = unsolved_json(job.world, placed.subdivision, placed.placement, placed.selected.selection,
+                                                        job.target.model, budget_ms)["unsolved_by_object"];
   return swept;
 }
 

@@ -1,7 +1,8 @@
 // The curve of memory against the budget, and the gates it is held against, on a small city.
 import assert from "node:assert/strict";
 import { createHash } from "node:crypto";
-import { readFileSync, readdirSync, writeFileSync } from "node:fs";
+import { readFileSync, readdirSync, rmSync, writeFileSync } from "node:fs";
+import { createRequire } from "node:module";
 import { join } from "node:path";
 import test from "node:test";
 import { expectExit, readJson, resultOf, scratch, source, start, target, tracesOf } from "./standin.mjs";
@@ -20,6 +21,12 @@ const changed = (name, change) => {
   change(object);
   return text(name, JSON.stringify(object));
 };
+const Ajv = createRequire(import.meta.url)("ajv/dist/2020.js").default;
+const ajv = new Ajv({ strict: true, allErrors: true });
+ajv.addSchema(readJson(join(source, "configs/job.schema.json")), "job.schema.json");
+const schema = (name) => ajv.compile(readJson(join(source, `configs/${name}.schema.json`)));
+const isSweep = schema("sweep"), isAcceptance = schema("acceptance");
+const expectSweep = (object) => assert.ok(isSweep(object), JSON.stringify(isSweep.errors?.slice(0, 5), null, 1));
 const sha256 = (bytes) => createHash("sha256").update(bytes).digest("hex");
 
 const first = sweep(0, "first");
@@ -32,6 +39,19 @@ test("ten budgets are chosen between reachable and needless, and it says so", ()
   assert.ok(survey.reachable_all_ms < budgets[0] && budgets[9] < survey.worst_bound_ms, `${budgets}`);
   assert.match(first.out, /^budgets: 10 budgets, evenly between the lowest reachable one \(.* ms\) and the highest bound of a region \(.* ms\)$/m);
   assert.deepEqual(readdirSync(out("first")).filter((name) => !name.startsWith(".")).sort(), ["report.html", "sweep.json"]);
+});
+
+test("sweep.json is what its schema says, and report writes the page again", () => {
+  expectSweep(first.sweep);
+  for (const spoil of [(s) => delete s.points[0].texture_bytes, (s) => (s.points[2].impostors = -1), (s) => (s.path = "/home")]) {
+    const spoilt = structuredClone(first.sweep);
+    spoil(spoilt);
+    assert.ok(!isSweep(spoilt), `the schema accepts ${spoil}`);
+  }
+  const page = readFileSync(join(out("first"), "report.html"), "utf8");
+  rmSync(join(out("first"), "report.html"));
+  expectExit(0, "report", out("first"));
+  assert.equal(readFileSync(join(out("first"), "report.html"), "utf8"), page);
 });
 
 test("the curve falls: every budget met, less memory and fewer slow regions at a looser one", () => {
@@ -64,7 +84,9 @@ test("the gate passes against its own baseline, at its budgets, and against met 
   const id = first.sweep.target.id;
   const criteria = [{ target: id, budget_ms: budgets[0], max_total_bytes: points[0].total_bytes, max_unsolved: 0 }, { target: "another machine", budget_ms: 1 }];
   const baseline = changed("own.json", (object) => (object.points = [object.points[0], object.points[8]]));
+  assert.ok(isAcceptance(criteria) && !isAcceptance([{ ...criteria[0], max: 1 }]));
   const run = sweep(0, "own", "--baseline", baseline, "--tolerance", "0", "--acceptance", text("met.json", JSON.stringify(criteria)));
+  expectSweep(run.sweep);
   assert.deepEqual(run.sweep.points.map((point) => point.budget_ms), [budgets[0], budgets[8]]);
   assert.deepEqual([run.sweep.passed, run.sweep.baseline.regressions, run.sweep.acceptance.length], [true, [], 1]);
   assert.match(run.out, /^2 budgets compared with the baseline, 0 worse$/m);
@@ -77,6 +99,7 @@ test("the gate fails against a better baseline, names budget, before and after, 
   const id = first.sweep.target.id;
   const criteria = [{ target: id, budget_ms: budgets[8], max_total_bytes: 1 }];
   const run = sweep(1, "worse", ...some, "--baseline", better, "--acceptance", text("unmet.json", JSON.stringify(criteria)));
+  expectSweep(run.sweep);
   assert.deepEqual(run.sweep.baseline.regressions.map((one) => [one.budget_ms, one.kind, one.before, one.after]),
                    [[budgets[0], "memory", less, points[0].texture_bytes]]);
   assert.ok(run.out.includes(`worse than the baseline at ${budgets[0]} ms: ${less} bytes of texture before, ${points[0].texture_bytes} now (+3`), run.out);
@@ -88,6 +111,8 @@ test("a budget that cannot be met fails, unless the baseline could not meet it e
   const impossible = 0.9 * survey.reachable_all_ms;
   const run = sweep(1, "unmet", "--budgets-ms", `${impossible}`);
   const [point] = run.sweep.points;
+  expectSweep(run.sweep);
+  assert.ok(point.unsolved_by_object.length > 0 && point.unsolved_by_object[0].regions > 0, "what is in the way is named");
   assert.ok(!point.met && !point.reachable && point.cpv.unsolved > 0, JSON.stringify(point));
   assert.match(run.out, /^not met: /m);
   const unmetBefore = text("unmet-before.json", JSON.stringify(run.sweep));
