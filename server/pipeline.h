@@ -6,22 +6,13 @@
 // The command line and the service run these same functions.
 #pragma once
 
-#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "render/base/work.h"
+#include "server/job/job_files.h"
 #include "server/job/job_spec.h"
 
 namespace standin {
-
-struct JobFiles {
-  std::filesystem::path scene;
-  std::filesystem::path target;
-  std::filesystem::path folder;  // result folder; survey: may be empty (nothing is written)
-};
-
-/// Hidden file of a result folder: the paths of its scene and target, for `check` and `verify`.
-inline constexpr const char* kInputsFile = ".standin-inputs.json";
 
 struct JobOutcome {
   nlohmann::json metrics;

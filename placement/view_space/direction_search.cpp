@@ -64,7 +64,7 @@ class Search {
       result_.worst_interval = leaf.interval;
     }
     if (predicted_ms <= budget_ms_) return;
-    result_.hot.push_back({leaf.interval, result_.seen.size(), leaf.seen.size()});
+    result_.hot.push_back({leaf.interval, predicted_ms, result_.seen.size(), leaf.seen.size()});
     result_.seen.insert(result_.seen.end(), leaf.seen.begin(), leaf.seen.end());
   }
 

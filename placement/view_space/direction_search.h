@@ -12,6 +12,7 @@ namespace standin {
 /// A leaf region over budget, with the range of its objects in DirectionSearchResult::seen.
 struct HotRegion {
   DirectionInterval interval;
+  double predicted_ms = 0.0;  // its bound
   std::size_t first_seen = 0;
   std::size_t seen_count = 0;
 };

@@ -35,11 +35,13 @@ std::vector<DirectionInterval> used_intervals(const std::vector<SearchedCell>& s
 class Subdivider {
  public:
   Subdivider(const Scene& scene, const std::vector<std::uint32_t>& rank, const ViewSpace& space, const Visibility& visibility,
-             const TimeModel& model, const Camera& camera, double interval_deg, const SubdivisionOptions& options, const WorkBudget& budget)
+             const TimeModel& model, const Camera& camera, double interval_deg, const SubdivisionOptions& options, const WorkBudget& budget,
+             SearchMemory* memory)
       : space_(space),
         visibility_(visibility),
         options_(options),
         budget_(budget),
+        memory_(memory),
         cell_boxes_(space),
         estimator_(scene, rank, model, camera, interval_deg),
         all_objects_(scene.objects.size()) {
@@ -94,12 +96,21 @@ class Subdivider {
 
   [[nodiscard]] SearchedCell search(const CellKey& key, std::vector<Box> chain, std::int32_t visible_set) const {
     SearchedCell searched{{key, chain.front(), visible_set, 0.0, {}}, std::move(chain), {}, std::numeric_limits<double>::infinity()};
-    CellCosts costs = costs_of(searched.cell, searched.chain);
-    searched.found = search_directions(estimator_, costs, options_.predicted_budget_ms);
-    searched.found.seen.shrink_to_fit();
+    searched.found = search(searched);
     searched.cell.worst_predicted_ms = searched.found.worst_predicted_ms;
     searched.cell.worst_interval = searched.found.worst_interval;
     return searched;
+  }
+
+  [[nodiscard]] DirectionSearchResult search(const SearchedCell& of) const {
+    const double predicted_ms = options_.predicted_budget_ms;
+    if (memory_ != nullptr)
+      if (auto known = memory_->recall(of.cell.key, predicted_ms)) return *std::move(known);
+    CellCosts costs = costs_of(of.cell, of.chain);
+    DirectionSearchResult found = search_directions(estimator_, costs, predicted_ms);
+    found.seen.shrink_to_fit();
+    if (memory_ != nullptr) memory_->keep(of.cell.key, predicted_ms, found);
+    return found;
   }
 
   [[nodiscard]] std::vector<SearchedCell> search_leaves() const {
@@ -191,6 +202,7 @@ class Subdivider {
   const Visibility& visibility_;
   const SubdivisionOptions& options_;
   const WorkBudget& budget_;
+  SearchMemory* memory_;
   CellBoxes cell_boxes_;
   RegionEstimator estimator_;
   std::vector<std::uint32_t> all_objects_;
@@ -203,8 +215,9 @@ class Subdivider {
 
 Subdivision subdivide(const Scene& scene, const std::vector<std::uint32_t>& hierarchy_rank, const ViewSpace& view_space,
                       const Visibility& visibility, const TimeModel& model, const Camera& camera, const ViewSpaceOptions& options,
-                      const SubdivisionOptions& subdivision_options, const WorkBudget& budget) {
-  Subdivider subdivider(scene, hierarchy_rank, view_space, visibility, model, camera, options.interval_deg, subdivision_options, budget);
+                      const SubdivisionOptions& subdivision_options, const WorkBudget& budget, SearchMemory* memory) {
+  Subdivider subdivider(scene, hierarchy_rank, view_space, visibility, model, camera, options.interval_deg, subdivision_options, budget,
+                        memory);
   Subdivision result = subdivider.assemble(subdivider.run());
   if (subdivider.cells_not_halved() > 0)
     result.left_out.push_back("halving " + std::to_string(subdivider.cells_not_halved()) + " more hot cells in position: more than " +

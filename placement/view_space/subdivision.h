@@ -13,6 +13,7 @@
 
 #include "estimation/time_model.h"
 #include "placement/view_space/region_bound.h"
+#include "placement/view_space/search_memory.h"
 #include "placement/view_space/view_space.h"
 #include "render/base/work.h"
 #include "render/view/direction_interval.h"
@@ -69,11 +70,11 @@ struct Visibility {
   std::vector<std::vector<std::uint32_t>> sets;
 };
 
-/// The same result for any number of threads.
+/// The same result for any number of threads, and with or without `memory` of searches at other budgets (which it adds to).
 [[nodiscard]] Subdivision subdivide(const Scene& scene, const std::vector<std::uint32_t>& hierarchy_rank, const ViewSpace& view_space,
                                     const Visibility& visibility, const TimeModel& model, const Camera& camera,
                                     const ViewSpaceOptions& options, const SubdivisionOptions& subdivision_options,
-                                    const WorkBudget& budget);
+                                    const WorkBudget& budget, SearchMemory* memory = nullptr);
 
 /// All leaf-level keys with a non-empty cell box, sorted (what visibility is computed for).
 [[nodiscard]] std::vector<CellKey> leaf_keys(const ViewSpace& view_space);

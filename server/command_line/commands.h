@@ -25,6 +25,8 @@ struct CommandArguments {
   double seconds = 45.0;              // calibrate
   double target_error = 0.0;          // calibrate: ends it early; 0: never
   double coverage = 0.99;             // calibrate
+  std::string baseline;               // sweep
+  std::string acceptance;             // sweep
   std::string objects;                // bake: "1,2,5-9"; empty: all
   std::string view_cell;              // bake: shaft:... or box:...
   std::string technique = "layered";  // bake
@@ -50,6 +52,7 @@ int info_command(const CommandContext& context);
 int calibrate_command(const CommandContext& context);
 int survey_command(const CommandContext& context);
 int place_command(const CommandContext& context);
+int sweep_command(const CommandContext& context);
 int bake_command(const CommandContext& context);
 int check_command(const CommandContext& context);
 int verify_command(const CommandContext& context);

@@ -1,9 +1,10 @@
-// survey and place: run the pipeline, say in a few lines what came out.
+// survey, place and sweep: run the pipeline, say in a few lines what came out.
 #include <cstdio>
 #include <iostream>
 
 #include "server/command_line/commands.h"
 #include "server/pipeline.h"
+#include "server/sweep/sweep.h"
 
 namespace standin {
 namespace {
@@ -60,6 +61,32 @@ void print_place(const json& metrics) {
               metrics["image"]["gap_pixels"].dump().c_str(), metrics["image"]["max_parallax_ratio"].dump().c_str());
 }
 
+void print_point(const json& point) {
+  std::printf("%10.6g ms: %7s CPVs, %s unsolved, %5s impostors, %10.3f kB of texture (lower bound %.3f kB), %.1f s%s\n",
+              point["budget_ms"].get<double>(), point["cpv"]["count"].dump().c_str(), point["cpv"]["unsolved"].dump().c_str(),
+              point["impostors"].dump().c_str(), point["texture_bytes"].get<double>() / 1e3,
+              point["memory_lower_bound_bytes"].get<double>() / 1e3, point["seconds"].get<double>(),
+              point["reachable"] == true ? "" : "; below what the survey calls reachable");
+}
+
+void print_gates(const json& sweep) {
+  for (const auto& budget_ms : sweep["unmet_ms"]) std::printf("not met: %s ms\n", budget_ms.dump().c_str());
+  if (sweep.contains("baseline")) {
+    const json& baseline = sweep["baseline"];
+    for (const auto& one : baseline["regressions"]) std::printf("worse than the baseline %s\n", one["sentence"].get<std::string>().c_str());
+    for (const auto& budget_ms : baseline["not_compared_ms"]) std::printf("not compared: %s ms, not in both curves\n", budget_ms.dump().c_str());
+    std::printf("%zu budgets compared with the baseline, %zu worse\n", baseline["compared_ms"].size(), baseline["regressions"].size());
+  }
+  for (const auto& verdict : sweep.value("acceptance", json::array()))
+    std::printf("criterion %s\n", verdict["sentence"].get<std::string>().c_str());
+}
+
+void print_sweep(const json& sweep) {
+  std::printf("budgets: %s\n", sweep["budgets_from"].get<std::string>().c_str());
+  for (const auto& point : sweep["points"]) print_point(point);
+  print_gates(sweep);
+}
+
 int finish(const JobOutcome& outcome, const CommandContext& context, void (*print)(const json&)) {
   if (context.arguments.json) {
     std::cout << outcome.metrics.dump(2) << "\n";
@@ -78,6 +105,11 @@ int survey_command(const CommandContext& context) {
 
 int place_command(const CommandContext& context) {
   return finish(run_place(files_of(context.arguments), context.spec, context.budget), context, print_place);
+}
+
+int sweep_command(const CommandContext& context) {
+  const SweepGates gates{context.arguments.baseline, context.arguments.acceptance};
+  return finish(run_sweep(files_of(context.arguments), gates, context.spec, context.budget), context, print_sweep);
 }
 
 }  // namespace standin

@@ -13,6 +13,9 @@ namespace {
 const std::vector<std::string> kSceneSections = {"scene"};
 const std::vector<std::string> kPlanSections = {"budget_ms", "scene",  "camera", "view_space", "visibility", "candidates", "impostors",
                                                 "select",    "device", "survey", "verify",     "seed",       "force",      "threads"};
+// Each budget is the command's own, and nothing is rendered.
+const std::vector<std::string> kSweepSections = {"scene",  "camera", "view_space", "visibility", "candidates", "impostors",
+                                                 "select", "survey", "sweep",      "seed",       "force",      "threads"};
 const std::vector<std::string> kBakeSections = {"scene", "camera", "impostors", "device", "seed", "threads"};
 const std::vector<std::string> kTimingSections = {"scene", "camera", "device", "seed", "threads"};
 
@@ -168,6 +171,16 @@ void add_planning_commands(Grammar& grammar) {
   place.json();
   place.run(place_command);
 
+  auto sweep = grammar.command("sweep", "the whole curve of memory against the budget, held against an earlier one");
+  sweep.one_scene();
+  sweep.target();
+  sweep.app.add_option("--baseline", sweep.arguments().baseline, "an earlier sweep.json: growing memory, and a budget no longer met, fail");
+  sweep.app.add_option("--acceptance", sweep.arguments().acceptance, "JSON list of criteria: target, budget_ms, max_total_bytes ...");
+  sweep.spec_flags(kSweepSections);
+  sweep.output("result folder");
+  sweep.json();
+  sweep.run(sweep_command);
+
   auto bake = grammar.command("bake", "one impostor of a scene's objects for a given view cell");
   bake.one_scene();
   bake.app.add_option("--objects", bake.arguments().objects, "object ids, as 1,2,5-9; all without it");
@@ -204,7 +217,7 @@ void add_result_commands(Grammar& grammar) {
   check.run(check_command);
   verify.run(verify_command);
 
-  auto report = grammar.command("report", "write DIR/report.html again");
+  auto report = grammar.command("report", "write DIR/report.html again, of a placement, a survey or a sweep");
   report.folder();
   report.run(report_command);
 }

@@ -16,6 +16,7 @@
 #include "server/pipeline.h"
 #include "server/report/pictures.h"
 #include "server/report/report.h"
+#include "server/report/sweep_report.h"
 #include "server/verify/shipped_impostors.h"
 #include "server/verify/verify.h"
 #include "server/verify/verify_json.h"
@@ -81,6 +82,22 @@ json check_json(const CheckReport& report) {
           {"findings", std::move(findings)}};
 }
 
+std::string sweep_report(const fs::path& folder) {
+  return make_sweep_report(read_json(folder / "sweep.json"));
+}
+
+std::string placement_report(const fs::path& folder) {
+  const json metrics = read_json(folder / "metrics.json");
+  const bool has_placement = fs::exists(folder / "placement.json");
+  const json placement = has_placement ? read_json(folder / "placement.json") : json();
+  std::vector<ReportPicture> pictures;
+  if (has_placement) {
+    const PlacementFile file = placement_from_json(placement, (folder / "placement.json").string());
+    pictures = report_pictures({}, read_shipped_impostors(read_file(folder / "impostors.glb"), file.placement));
+  }
+  return make_report(metrics, placement, pictures);
+}
+
 }  // namespace
 
 int check_command(const CommandContext& context) {
@@ -134,15 +151,8 @@ int verify_command(const CommandContext& context) {
 
 int report_command(const CommandContext& context) {
   const fs::path folder = context.arguments.folder;
-  const json metrics = read_json(folder / "metrics.json");
-  const bool has_placement = fs::exists(folder / "placement.json");
-  const json placement = has_placement ? read_json(folder / "placement.json") : json();
-  std::vector<ReportPicture> pictures;
-  if (has_placement) {
-    const PlacementFile file = placement_from_json(placement, (folder / "placement.json").string());
-    pictures = report_pictures({}, read_shipped_impostors(read_file(folder / "impostors.glb"), file.placement));
-  }
-  write_file(folder / "report.html", make_report(metrics, placement, pictures));
+  const bool swept = fs::exists(folder / "sweep.json");
+  write_file(folder / "report.html", swept ? sweep_report(folder) : placement_report(folder));
   std::printf("%s\n", (folder / "report.html").c_str());
   return 0;
 }

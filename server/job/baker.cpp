@@ -16,8 +16,8 @@ constexpr BakedSize kImpossible{0.0, {1e15, 1e15, 1.0}, false};
 
 }  // namespace
 
-Baker::Baker(const World& world, const std::vector<Candidate>& candidates)
-    : world_(world), textures_(world.scene), candidates_(candidates), sizes_(candidates.size()) {}
+Baker::Baker(const World& world, const std::vector<Candidate>& candidates, BakeMemory* memory)
+    : world_(world), textures_(world.scene), candidates_(candidates), memory_(memory), sizes_(candidates.size()) {}
 
 std::uint32_t Baker::bake(const std::vector<std::uint32_t>& chosen, const WorkBudget& budget) {
   std::vector<std::uint32_t> missing;
@@ -26,7 +26,7 @@ std::uint32_t Baker::bake(const std::vector<std::uint32_t>& chosen, const WorkBu
   std::vector<std::optional<Impostor>> fresh(missing.size());
   std::atomic<std::size_t> done{0};
   parallel_for(missing.size(), world_.threads, budget, [&](std::size_t i) {
-    fresh[i] = try_bake(candidates_[missing[i]], budget);
+    fresh[i] = recall_or_bake(candidates_[missing[i]], budget);
     budget.report("bake", static_cast<double>(++done) / static_cast<double>(missing.size()));
   });
   for (std::size_t i = 0; i < missing.size(); ++i) keep(missing[i], std::move(fresh[i]));
@@ -37,6 +37,14 @@ double Baker::bytes(const std::vector<std::uint32_t>& chosen) const {
   double sum = 0.0;
   for (const auto id : chosen) sum += sizes_[id] ? sizes_[id]->bytes : candidates_[id].bytes;
   return sum;
+}
+
+std::optional<Impostor> Baker::recall_or_bake(const Candidate& candidate, const WorkBudget& budget) const {
+  if (memory_ != nullptr)
+    if (auto known = memory_->recall(candidate)) return *std::move(known);
+  auto impostor = try_bake(candidate, budget);
+  if (memory_ != nullptr) memory_->keep(candidate, impostor);
+  return impostor;
 }
 
 // Nothing where the sketch was too hopeful: the recorded vertices need more layers than allowed.

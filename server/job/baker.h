@@ -1,4 +1,4 @@
-// Bakes what the selection chooses, once, and knows the real bytes and costs from then on.
+// Bakes what the selection chooses, once, and knows the real bytes and costs from then on (thesis 5.7.3 bakes at each greedy step).
 #pragma once
 
 #include <map>
@@ -8,6 +8,7 @@
 #include "placement/candidates/candidates.h"
 #include "render/impostor/impostor.h"
 #include "render/impostor/texture_pyramid.h"
+#include "server/job/bake_memory.h"
 #include "server/job/world.h"
 
 namespace standin {
@@ -22,7 +23,8 @@ struct BakedSize {
 /// Keeps what was baked across rounds; candidates keep their ids throughout.
 class Baker {
  public:
-  Baker(const World& world, const std::vector<Candidate>& candidates);
+  /// `memory`: of bakes in the same world, looked at and added to; or none.
+  Baker(const World& world, const std::vector<Candidate>& candidates, BakeMemory* memory);
 
   /// Bakes those of `chosen` that are not baked yet, side by side. Returns how many.
   std::uint32_t bake(const std::vector<std::uint32_t>& chosen, const WorkBudget& budget);
@@ -38,12 +40,14 @@ class Baker {
   [[nodiscard]] const std::vector<std::optional<BakedSize>>& sizes() const { return sizes_; }
 
  private:
+  [[nodiscard]] std::optional<Impostor> recall_or_bake(const Candidate& candidate, const WorkBudget& budget) const;
   [[nodiscard]] std::optional<Impostor> try_bake(const Candidate& candidate, const WorkBudget& budget) const;
   void keep(std::uint32_t id, std::optional<Impostor> impostor);
 
   const World& world_;
   const TexturePyramids textures_;
   const std::vector<Candidate>& candidates_;
+  BakeMemory* memory_;
   std::vector<std::optional<BakedSize>> sizes_;
   std::map<std::uint32_t, Impostor> baked_;
 };

@@ -60,6 +60,8 @@ struct JobSpec {
   std::string device = "osmesa";
   std::uint64_t survey_views = 20'000;
   std::uint32_t verify_views = 32;
+  std::vector<double> sweep_budgets_ms;  // empty: those of a baseline or of criteria, or some that are chosen
+  double sweep_tolerance = 0.02;         // relative
   std::uint64_t seed = 1;
   std::vector<std::string> force;  // stages that leave nothing out; "all": every one
   int threads = 0;                 // 0: one per processor; never part of a result

@@ -12,12 +12,13 @@ constexpr double kFirstShare = 0.6;
 constexpr double kNextShare = 0.6;
 constexpr double kLeastShare = 0.03;
 
-Subdivision subdivide_at(const World& world, const TimeModel& model, double predicted_ms, const WorkBudget& budget) {
+Subdivision subdivide_at(const World& world, const TimeModel& model, double predicted_ms, const WorkBudget& budget,
+                         SearchMemory* searches) {
   SubdivisionOptions options;
   options.threads = world.threads;
   options.predicted_budget_ms = predicted_ms;
   return subdivide(world.scene, world.hierarchy.rank, world.view_space, world.visibility, model, world.camera, world.view_space_options,
-                   options, budget);
+                   options, budget, searches);
 }
 
 std::uint64_t leaf_regions(const Subdivision& subdivision, const ViewSpaceOptions& options) {
@@ -44,13 +45,13 @@ ReachSummary without_reach(const TimeModel& model, Subdivision problem) {
 }
 
 ReachSummary summarise_reach(const World& world, const TimeModel& model, const Subdivision& whole, const SizeModels& sizes,
-                             const CandidateOptions& options, const WorkBudget& budget) {
+                             const CandidateOptions& options, const WorkBudget& budget, SearchMemory* searches) {
   ReachSummary summary;
   summary.known = true;
   double worst_ms = whole.worst_predicted_ms;
   for (double share = kFirstShare; share > kLeastShare; share *= kNextShare) {
     const double threshold_ms = share * whole.worst_predicted_ms;
-    summary.subdivision = subdivide_at(world, model, threshold_ms, budget);
+    summary.subdivision = subdivide_at(world, model, threshold_ms, budget, searches);
     worst_ms = std::min(worst_ms, summary.subdivision.worst_predicted_ms);
     const Reach reach =
         reachable_times(world.scene, world.hierarchy, summary.subdivision, model, sizes, world.camera, world.quality, options, budget);

@@ -27,9 +27,9 @@ struct ReachSummary {
   std::vector<std::uint32_t> blockers;  // objects that make up most of what is left in the worst region
 };
 
-/// `whole`: the regions of the view space, without a budget.
+/// `whole`: the regions of the view space, without a budget. `searches`: of the same world, looked at and added to; or none.
 [[nodiscard]] ReachSummary summarise_reach(const World& world, const TimeModel& model, const Subdivision& whole, const SizeModels& sizes,
-                                           const CandidateOptions& options, const WorkBudget& budget);
+                                           const CandidateOptions& options, const WorkBudget& budget, SearchMemory* searches);
 /// The same where nobody asks how low the budget may go, since `problem` has no problem view: worst_bound_ms alone is known.
 [[nodiscard]] ReachSummary without_reach(const TimeModel& model, Subdivision problem);
 

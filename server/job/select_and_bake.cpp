@@ -67,7 +67,9 @@ Correction compare(const std::vector<Candidate>& estimated, const std::vector<st
                    double cost_share, const Correction& unknown) {
   std::vector<double> bytes, quads, texels;
   for (std::size_t id = 0; id < estimated.size(); ++id) {
-    if (estimated[id].technique != technique || !real[id] || !real[id]->possible || !(pixels_of(estimated[id].cost) > 0.0) || !(estimated[id].cost.quads > 0.0)) continue;
+    if (estimated[id].technique != technique || !real[id] || !real[id]->possible || !(pixels_of(estimated[id].cost) > 0.0) ||
+        !(estimated[id].cost.quads > 0.0))
+      continue;
     bytes.push_back(real[id]->bytes / estimated[id].bytes);
     quads.push_back(real[id]->cost.quads / estimated[id].cost.quads);
     texels.push_back(pixels_of(real[id]->cost) / pixels_of(estimated[id].cost));
@@ -140,8 +142,8 @@ void collect(SelectedImpostors& result, Baker& baker) {
 // The rounds of one job.
 class Rounds {
  public:
-  Rounds(const World& world, const Subdivision& subdivision, const CandidateSet& candidates, const SizeModels& sizes, const TimeModel& model,
-         double budget_ms, const WorkBudget& budget)
+  Rounds(const World& world, const Subdivision& subdivision, const CandidateSet& candidates, const SizeModels& sizes,
+         const TimeModel& model, double budget_ms, BakeMemory* bakes, const WorkBudget& budget)
       : world_(world),
         subdivision_(subdivision),
         candidates_(candidates),
@@ -149,7 +151,7 @@ class Rounds {
         budget_ms_(budget_ms),
         budget_(budget),
         margins_(margins_of(sizes)),
-        baker_(world, candidates.candidates) {
+        baker_(world, candidates.candidates, bakes) {
     result_.atlas_pages = 1;
     result_.page_switch_ms = page_switches_ms(model_, 1);
     problem_ = make_selection_problem(world.hierarchy, subdivision, candidates, model, world.camera, limits(), world.threads, budget);
@@ -222,9 +224,8 @@ class Rounds {
       if (baker_.sizes()[id]) return;
       const Candidate& candidate = candidates_.candidates[id];
       // Nothing is proven of a mesh's size.
-      const double least = is_mesh(candidate.technique)
-                               ? 0.0
-                               : bound.texture_bytes(candidate.objects, candidate.view_cell, world_.camera, world_.quality);
+      const double least =
+          is_mesh(candidate.technique) ? 0.0 : bound.texture_bytes(candidate.objects, candidate.view_cell, world_.camera, world_.quality);
       problem_.bytes[id] = std::max(kNothingProven, least);
     });
   }
@@ -291,9 +292,9 @@ class Rounds {
 }  // namespace
 
 SelectedImpostors select_and_bake(const World& world, const Subdivision& subdivision, const CandidateSet& candidates,
-                                  const SizeModels& sizes, const TimeModel& model, double budget_ms, const JobSpec& spec, StageClock& clock,
-                                  const WorkBudget& budget) {
-  auto rounds = clock.run("select", [&] { return Rounds(world, subdivision, candidates, sizes, model, budget_ms, budget); });
+                                  const SizeModels& sizes, const TimeModel& model, double budget_ms, const JobSpec& spec, BakeMemory* bakes,
+                                  StageClock& clock, const WorkBudget& budget) {
+  auto rounds = clock.run("select", [&] { return Rounds(world, subdivision, candidates, sizes, model, budget_ms, bakes, budget); });
   for (int round = 0; round < spec.bake_rounds; ++round) {
     clock.run("select", [&] { rounds.select(spec); });
     if (clock.run("bake", [&] { return rounds.bake(); })) break;

@@ -14,6 +14,7 @@
 #include "placement/select/selection_problem.h"
 #include "placement/view_space/subdivision.h"
 #include "server/job/assemble.h"
+#include "server/job/bake_memory.h"
 #include "server/job/world.h"
 
 namespace standin {
@@ -36,8 +37,9 @@ struct SelectedImpostors {
   double page_switch_ms = 0.0;  // all pages, as every region that draws an impostor is charged
 };
 
+/// `bakes`: shared with jobs at other budgets, or none; the result is the same.
 [[nodiscard]] SelectedImpostors select_and_bake(const World& world, const Subdivision& subdivision, const CandidateSet& candidates,
                                                 const SizeModels& sizes, const TimeModel& model, double budget_ms, const JobSpec& spec,
-                                                StageClock& clock, const WorkBudget& budget);
+                                                BakeMemory* bakes, StageClock& clock, const WorkBudget& budget);
 
 }  // namespace standin

@@ -4,7 +4,7 @@ import assert from "node:assert/strict";
 import test from "node:test";
 import { expectExit } from "./standin.mjs";
 
-const kCommands = ["make-city", "info", "calibrate", "survey", "place", "bake", "check", "verify", "report"];
+const kCommands = ["make-city", "info", "calibrate", "survey", "place", "sweep", "bake", "check", "verify", "report"];
 const help = Object.fromEntries(kCommands.map((command) => [command, expectExit(0, command, "--help").out]));
 
 /** Keys that a command's help names, each with its flag: "  --leaf-m TEXT   side of ... [view_space.leaf_m, default 23.0]". */
@@ -40,9 +40,11 @@ test("standin --help names every command, and --version answers", () => {
   assert.match(expectExit(0, "--version").out, /^standin \d+\.\d+\.\d+$/m);
 });
 
-test("survey and place offer every setting of the schema but the boxes", () => {
+test("survey, place and sweep offer every setting of the schema but the boxes and what is another's", () => {
   const keys = [...schemaKeys().keys()].filter((key) => key !== "view_space.boxes").sort();
-  for (const command of ["survey", "place"]) assert.deepEqual([...settingsOf(command).keys()].sort(), keys, command);
+  const others = { survey: /^sweep\./, place: /^sweep\./, sweep: /^(budget_ms|device|verify\..*)$/ };
+  for (const [command, other] of Object.entries(others))
+    assert.deepEqual([...settingsOf(command).keys()].sort(), keys.filter((key) => !other.test(key)), command);
 });
 
 test("every offered flag sets its key", () => {

@@ -24,7 +24,7 @@ function labelledSplits(splits) {
   return splits.map((value) => (value !== null && (lead(value) === 1 || (!wide && [2, 5].includes(lead(value)))) ? value : null));
 }
 
-/// options: {label (for screen readers), x: {label, format, log}, y: {...}, series: [{name, colour (css variable), dash, points, values}], xs, height}
+/// options: {label (for screen readers), x: {label, format, log}, y: {...}, series: [{name, colour (css variable), dash, points, marksOnly, values}], xs, height}
 function lineChart(options) {
   const host = element("div", { class: "chart", role: "img", "aria-label": options.label });
   charts.push({ host, options, plot: null });
@@ -34,7 +34,7 @@ function lineChart(options) {
 function plotSeries(series, formatY) {
   const stroke = cssColour(series.colour);
   return {
-    label: series.name, stroke, width: 2, dash: series.dash, spanGaps: true, points: { show: Boolean(series.points), size: 7, stroke, fill: stroke },
+    label: series.name, stroke, width: 2, dash: series.dash, spanGaps: true, ...(series.marksOnly ? { paths: () => null } : {}), points: { show: Boolean(series.points), size: 7, stroke, fill: stroke },
     value: (chart, value) => (value === null || value === undefined ? NONE : formatY(value)),
   };
 }

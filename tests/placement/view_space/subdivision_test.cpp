@@ -30,9 +30,9 @@ struct World {
         rank(test::identity_rank(scene)) {}
 
   [[nodiscard]] Subdivision subdivide_for(double budget_ms, const TimeModel& model, const Visibility& visibility = {},
-                                          SubdivisionOptions given = {}) const {
+                                          SubdivisionOptions given = {}, SearchMemory* memory = nullptr) const {
     given.predicted_budget_ms = budget_ms;
-    return subdivide(scene, rank, space, visibility, model, camera, options, given, {});
+    return subdivide(scene, rank, space, visibility, model, camera, options, given, {}, memory);
   }
   [[nodiscard]] RegionEstimator estimator(const TimeModel& model) const { return {scene, rank, model, camera, options.interval_deg}; }
   [[nodiscard]] std::vector<std::uint32_t> all() const { return rank; }
@@ -97,6 +97,60 @@ TEST(Subdivision, NothingIsSlowWithinAGenerousBudgetAndTheWorstRegionIsStillKnow
   EXPECT_EQ(found.cells.size(), 1U);
   EXPECT_NEAR(found.worst_predicted_ms, 10.802, 1e-9);
   EXPECT_EQ(found.cells[0].worst_interval.face, Face::kPosX);
+}
+
+void expect_same(const Subdivision& a, const Subdivision& b) {
+  ASSERT_EQ(a.cells.size(), b.cells.size());
+  for (std::size_t c = 0; c < a.cells.size(); ++c) {
+    EXPECT_EQ(a.cells[c].key, b.cells[c].key);
+    EXPECT_EQ(a.cells[c].worst_predicted_ms, b.cells[c].worst_predicted_ms);
+    EXPECT_EQ(a.cells[c].worst_interval, b.cells[c].worst_interval);
+  }
+  EXPECT_EQ(a.intervals, b.intervals);
+  ASSERT_EQ(a.cpvs.size(), b.cpvs.size());
+  for (std::size_t p = 0; p < a.cpvs.size(); ++p) {
+    EXPECT_EQ(a.cpvs[p].cell, b.cpvs[p].cell);
+    EXPECT_EQ(a.cpvs[p].interval, b.cpvs[p].interval);
+    EXPECT_EQ(a.cpvs[p].predicted_ms, b.cpvs[p].predicted_ms);
+    EXPECT_EQ(a.cpvs[p].first_term, b.cpvs[p].first_term);
+  }
+  ASSERT_EQ(a.terms.size(), b.terms.size());
+  for (std::size_t t = 0; t < a.terms.size(); ++t) {
+    EXPECT_EQ(a.terms[t].object, b.terms[t].object);
+    EXPECT_EQ(a.terms[t].predicted_ms, b.terms[t].predicted_ms);
+  }
+}
+
+// In whatever order the budgets come: what was searched for a tighter one serves, and for a looser one is searched anew.
+TEST(Subdivision, MemoryOfOtherBudgetsChangesNothing) {
+  const World world = small_town(2);
+  const TimeModel model = test::full_time_model();
+  const double worst = world.subdivide_for(1e9, model).worst_predicted_ms;
+  SearchMemory memory;
+  std::set<std::size_t> cpvs;
+  for (const double share : {0.8, 0.5, 0.9, 0.65, 0.5, 0.3, 1.1}) {
+    const Subdivision fresh = world.subdivide_for(share * worst, model);
+    cpvs.insert(fresh.cpvs.size());
+    expect_same(world.subdivide_for(share * worst, model, {}, {}, &memory), fresh);
+  }
+  EXPECT_GE(cpvs.size(), 5U);
+}
+
+TEST(SearchMemory, RecallsNoBudgetTighterThanItHas) {
+  SearchMemory memory;
+  const CellKey cell{3, {1, 2, 3}};
+  DirectionSearchResult found;
+  found.hot = {{{Face::kPosX, 2, 0, 0}, 7.0, 1, 1}, {{Face::kPosX, 2, 1, 0}, 9.0, 0, 1}};
+  found.seen = {4, 5};
+  memory.keep(cell, 6.0, found);
+  EXPECT_FALSE(memory.recall(cell, 5.9));
+  EXPECT_FALSE(memory.recall({3, {1, 2, 4}}, 6.0));
+  EXPECT_EQ(memory.recall(cell, 6.0)->hot.size(), 2U);
+  const auto looser = memory.recall(cell, 7.0);  // a bound of just the budget is within it
+  ASSERT_EQ(looser->hot.size(), 1U);
+  EXPECT_EQ(looser->hot[0].predicted_ms, 9.0);
+  EXPECT_THAT(looser->seen_in(looser->hot[0]), testing::ElementsAre(4U));
+  EXPECT_TRUE(memory.recall(cell, 9.0)->hot.empty());
 }
 
 // The search against a plain evaluation of every leaf region from scratch.

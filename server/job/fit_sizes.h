@@ -1,0 +1,12 @@
+// What an impostor will weigh, from real bakes of this scene's own candidates (thesis 5.8.1).
+#pragma once
+
+#include "placement/candidates/size_models.h"
+#include "server/job/surveyed_scene.h"
+
+namespace standin {
+
+/// One model per technique that the job offers. `whole`: the regions of the view space, without a budget.
+[[nodiscard]] SizeModels fit_sizes(const Surveyed& job, const Subdivision& whole, const JobSpec& spec, const WorkBudget& budget);
+
+}  // namespace standin

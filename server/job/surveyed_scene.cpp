@@ -1,0 +1,65 @@
+#include "server/job/surveyed_scene.h"
+
+#include <limits>
+
+#include "server/job/fit_sizes.h"
+
+namespace standin {
+namespace {
+
+CandidateOptions candidate_options_of(const JobSpec& spec, int threads) {
+  CandidateOptions options;
+  options.apex_deg = spec.apex_deg;
+  options.direction_step_deg = spec.direction_step_deg;
+  options.shape = spec.cell_shape == "box" ? CellShape::kBox : CellShape::kShaft;
+  options.threads = threads;
+  options.every_direction = forced(spec, "candidates");
+  return options;
+}
+
+// What impostors could do for the worst views; where the placement at hand has no problem view, nobody asks.
+void add_reach(Surveyed& job, const JobSpec& spec, const Subdivision* problem, StageClock& clock, const WorkBudget& budget) {
+  const World& world = job.world;
+  const TimeModel& model = job.target.model;
+  if (problem != nullptr && problem->cpvs.empty() && !forced(spec, "candidates")) {
+    clock.skip("size_model", kNoProblemViews);
+    clock.leave_out("survey", std::string(kNoProblemViews) + ", so nobody asks how low the budget could go");
+    job.reach = without_reach(model, *problem);
+    return;
+  }
+  const Subdivision whole = clock.run("survey", [&] { return problem_views(job, std::numeric_limits<double>::infinity(), budget); });
+  job.sizes = clock.run("size_model", [&] { return fit_sizes(job, whole, spec, budget); });
+  job.reach = clock.run("survey",
+                        [&] { return summarise_reach(world, model, whole, job.sizes, job.candidate_options, budget, job.searches.get()); });
+}
+
+}  // namespace
+
+void load_job(const JobFiles& files, const JobSpec& spec, StageClock& clock, const WorkBudget& budget, Surveyed& job) {
+  job.target = read_target(files.target);
+  build_world(files.scene, spec, clock, budget, job.world);
+  job.candidate_options = candidate_options_of(spec, job.world.threads);
+}
+
+Subdivision problem_views(const Surveyed& job, double predicted_budget_ms, const WorkBudget& budget) {
+  const World& world = job.world;
+  SubdivisionOptions options;
+  options.threads = world.threads;
+  options.predicted_budget_ms = predicted_budget_ms;
+  return subdivide(world.scene, world.hierarchy.rank, world.view_space, world.visibility, job.target.model, world.camera,
+                   world.view_space_options, options, budget, job.searches.get());
+}
+
+void survey_scene(Surveyed& job, const JobSpec& spec, const Subdivision* problem, StageClock& clock, const WorkBudget& budget) {
+  add_reach(job, spec, problem, clock, budget);
+  clock.run("survey", [&] {
+    SurveyOptions options;
+    options.views = static_cast<std::uint32_t>(spec.survey_views);
+    options.seed = spec.seed;
+    options.threads = job.world.threads;
+    job.survey =
+        survey_views(job.world.scene, job.world.view_space, job.reach.subdivision, job.target.model, job.world.camera, options, budget);
+  });
+}
+
+}  // namespace standin

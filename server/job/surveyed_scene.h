@@ -1,0 +1,40 @@
+// A scene with its target, surveyed: what every budget of one job shares (thesis 5.5, and 5.8.1 for the size models).
+//
+// Loading, visible sets, size models, what is reachable and which views are slow do not depend on the budget, and take most of the seconds:
+// `survey` reports them, `place` goes on from them once, `sweep` once for each budget.
+#pragma once
+
+#include <memory>
+
+#include "estimation/time_model.h"
+#include "placement/candidates/candidates.h"
+#include "placement/view_space/survey.h"
+#include "server/job/job_files.h"
+#include "server/job/reach.h"
+#include "server/job/world.h"
+
+namespace standin {
+
+/// Why stages are left out where there is nothing to place.
+inline constexpr const char* kNoProblemViews = "no problem views: every region's bound is within the budget";
+
+struct Surveyed {
+  World world;
+  Target target;
+  CandidateOptions candidate_options;
+  SizeModels sizes;
+  ReachSummary reach;
+  Survey survey;
+  std::unique_ptr<SearchMemory> searches = std::make_unique<SearchMemory>();  // of all subdivisions so far; reset to free it
+};
+
+/// Stages load, view_space and visibility.
+void load_job(const JobFiles& files, const JobSpec& spec, StageClock& clock, const WorkBudget& budget, Surveyed& job);
+
+/// The regions whose predicted bound exceeds the budget.
+[[nodiscard]] Subdivision problem_views(const Surveyed& job, double predicted_budget_ms, const WorkBudget& budget);
+
+/// Stages size_model and survey. `problem`: the problem views of a placement, if there is one.
+void survey_scene(Surveyed& job, const JobSpec& spec, const Subdivision* problem, StageClock& clock, const WorkBudget& budget);
+
+}  // namespace standin
