@@ -10,7 +10,7 @@
 namespace standin {
 namespace {
 
-constexpr int kRounds = 2;                   // over the unseen objects, at most
+constexpr int kRounds = 2;                    // over the unseen objects, at most
 constexpr double kRaysPerSteradian = 1000.0;  // aimed at an object in a round, by the solid angle of its bounds; one at least ...
 constexpr double kMostRays = 8.0;             // ... and no more than these
 constexpr int kExploringRays = 64;            // per object found
@@ -49,6 +49,7 @@ std::vector<std::uint32_t> AimedSearch::seen() const {
 
 void AimedSearch::aim() {
   std::vector<Aim> left = aims();
+  kept_rays_ = rays_left_ / 2;
   for (int round = 0; round < kRounds && shoot(left) > 0; ++round) std::erase_if(left, [&](const Aim& aim) { return seen_[aim.object]; });
 }
 
@@ -66,7 +67,7 @@ std::uint64_t AimedSearch::shoot(const std::vector<Aim>& aims) {
   std::uint64_t found = 0;
   for (const Aim& aim : aims) {
     budget_.check();
-    for (std::uint32_t i = 0; i < aim.rays && !seen_[aim.object] && spend(); ++i) {
+    for (std::uint32_t i = 0; i < aim.rays && !seen_[aim.object] && rays_left_ > kept_rays_ && spend(); ++i) {
       const Vec3 target = target_on(aim.object);
       const Vec3 inside = random_point(rng_, region_);
       const Vec3 position = exit_point(region_, inside, target - inside);

@@ -28,7 +28,7 @@ class AimedSearch {
   /// Accounts for a ray shot elsewhere; false when none is left.
   [[nodiscard]] bool spend() { return rays_left_ > 0 && rays_left_-- > 0; }
 
-  /// Rounds over all unseen objects, until one finds nothing.
+  /// Rounds over all unseen objects, until one finds nothing or half of the rays left are spent.
   void aim();
   /// A ray from `position` saw it: explores around, if it is new. Returns whether it is.
   bool add(std::uint32_t object, const Vec3& position);
@@ -47,6 +47,7 @@ class AimedSearch {
   const Raytracer& raytracer_;
   const Box& region_;
   std::uint64_t rays_left_;
+  std::uint64_t kept_rays_ = 0;  // not to be aimed
   Rng& rng_;
   const WorkBudget& budget_;
   std::vector<bool> seen_;

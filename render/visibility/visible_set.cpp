@@ -24,7 +24,7 @@ class RegionSampler {
       : raytracer_(raytracer),
         region_(region),
         cap_(region, scene.bounds),
-        missed_share_of_cap_(options.missed_share / std::max(cap_.share_of_sphere(), kLeastCapShare)),
+        missed_share_of_cap_(std::min(0.5, options.missed_share / std::max(cap_.share_of_sphere(), kLeastCapShare))),
         rays_(options.rays),
         budget_(budget),
         building_(options.seed, 2 * stream),
@@ -45,10 +45,10 @@ class RegionSampler {
   }
 
   MissCertificate certify() {
-    MissCertificate certificate(kVisibilityConfidence);
+    MissCertificate certificate(kVisibilityConfidence, missed_share_of_cap_);
     for (std::uint64_t i = 0; search_.rays_left() > 0; ++i) {
       if (i % kRaysPerBound == 0 && certificate.upper_bound() <= missed_share_of_cap_) break;
-      certificate.add(shoot_uniform(certifying_, i));
+      if (certificate.add(shoot_uniform(certifying_, i))) search_.aim();
     }
     return certificate;
   }

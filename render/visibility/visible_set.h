@@ -1,8 +1,9 @@
 // From-region visibility with a certificate: which objects can be seen from a box of positions, and how much a view from it misses.
 //
 // Some uniform rays, then rays aimed at what they did not see, build the set (aimed_search.h). Then fresh uniform rays test it until they
-// have proved that the missed share is at most the one asked for, at 99 %, or the region's rays are used up. What they see beyond the set is
-// added at once; the proof allows for that (certificate.h). The bound is the set's as returned: other independent rays may only lower it.
+// have proved that the missed share is at most the one asked for, at 99 %, or the region's rays are used up. What they see beyond the set
+// is added at once; the proof allows for that (certificate.h). The bound is the set's as returned: other independent rays may only lower
+// it.
 //
 // The missed share is that of rays from uniform positions of the box in uniform directions whose first hit is no member of the set: of
 // the pixels of all views together, weighted by solid angle. A single view can miss more (visible_set_audit.h samples how much). Objects

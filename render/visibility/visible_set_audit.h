@@ -16,8 +16,8 @@
 namespace standin {
 
 struct VisibilityAuditOptions {
-  std::uint64_t rays = 460'517;     // uniform ones, of all regions together, at least one each: ln 0.01 / ln(1 - 1e-5)
-  std::uint32_t views = 8;          // per region, uniform in position and direction
+  std::uint64_t rays = 460'517;      // uniform ones, of all regions together, at least one each: ln 0.01 / ln(1 - 1e-5)
+  std::uint32_t views = 4;           // per region, uniform in position and direction
   std::uint32_t rays_per_side = 24;  // of a view's raster
   std::uint64_t seed = 1;
 };

@@ -1,8 +1,8 @@
 // Error against run time, stage by stage: what more time would buy (architecture.md, error against run time).
 //
-// Selection and baking report what happened on the way. Visibility, subdivision and baking are run once more on less (larger missed shares, fewer
-// halvings, coarser texels), the first and the last on a few regions and impostors only, their seconds scaled up to all: together some
-// tens of percent of these stages' time.
+// Selection and baking report what happened on the way. Visibility, subdivision and baking are run once more on less (larger missed shares,
+// fewer halvings, coarser texels), the first and the last on a few regions and impostors only, their seconds scaled up to all: together
+// some tens of percent of these stages' time.
 #pragma once
 
 #include <nlohmann/json.hpp>

@@ -24,11 +24,11 @@ namespace standin {
 
 /// How good the cells' visible sets are, and what they cost.
 struct VisibilityFigures {
-  double highest_missed_share = 0.0;  // certified for each cell at 99 %, of uniform rays
-  double mean_missed_share = 0.0;     // certified for the mean over the cells at 99 %
-  double worst_view_share = 0.0;      // of pixels, in the worst of the sampled views
-  std::uint64_t views = 0;            // sampled for it
-  std::uint64_t rays = 0;             // that the sets took, all cells together
+  double highest_missed_share = 0.0;    // certified for each cell at 99 %, of uniform rays
+  double mean_missed_share = 0.0;       // certified for the mean over the cells at 99 %
+  double worst_view_share = 0.0;        // of pixels, in the worst of the sampled views
+  std::uint64_t views = 0;              // sampled for it
+  std::uint64_t rays = 0;               // that the sets took, all cells together
   std::uint64_t uncertified_cells = 0;  // whose rays were used up before the missed share asked for was certified
 };
 

@@ -17,19 +17,13 @@
 #include "render/visibility/region_rays.h"
 #include "render/visibility/visible_set.h"
 #include "server/job/world.h"
-#ifdef OLD
-namespace old {
-using namespace standin;
-#include "/tmp/old_all.inc"
-}
-#endif
 
 namespace {
 
 using namespace standin;
 
 constexpr std::uint64_t kCleanRays = 46'050;  // none misses: 1e-4 at 99 %, were there one test only
-constexpr std::array kBuildingRays = {std::uint64_t{100'000}, std::uint64_t{300'000}, std::uint64_t{1'000'000}};
+constexpr std::array kBuildingRays = {std::uint64_t{3'000}, std::uint64_t{100'000}, std::uint64_t{300'000}};
 constexpr std::uint64_t kMostUniformRays = 100'000'000;
 constexpr std::uint64_t kFreshRays = 1'000'000;  // per cell, that judge both sets
 constexpr int kFramesPerRun = 10;
@@ -78,7 +72,8 @@ class Bench {
 // What uniform rays alone come to.
 class UniformSampler {
  public:
-  UniformSampler(const World& world, const Box& region, Rng& rng) : world_(world), region_(region), cap_(region, world.scene.bounds), rng_(rng) {
+  UniformSampler(const World& world, const Box& region, Rng& rng)
+      : world_(world), region_(region), cap_(region, world.scene.bounds), rng_(rng) {
     for (const Object& object : world.scene.objects) seen_.push_back(!intersection(region, object.bounds).empty());
   }
 
@@ -91,7 +86,7 @@ class UniformSampler {
   /// So many rays, then until our own certificate states 1e-4.
   [[nodiscard]] VisibleSet until_certified(std::uint64_t building_rays) {
     while (rays_ < building_rays) static_cast<void>(shoot());
-    MissCertificate certificate(kVisibilityConfidence);
+    MissCertificate certificate(kVisibilityConfidence, 1e-4);
     do certificate.add(shoot());
     while ((rays_ % 64 != 0 || certificate.upper_bound() > 1e-4) && rays_ < kMostUniformRays);
     return set(certificate.upper_bound());
@@ -132,8 +127,8 @@ void print(const std::string& name, const std::vector<Figures>& all) {
     worst_bound = std::max(worst_bound, one.bound), worst_missed = std::max(worst_missed, one.missed);
   }
   const auto n = static_cast<double>(all.size());
-  std::printf("| %s | %.0f | %.4f | %.2g | %.2g | %.2g | %.0f | %.1f | %.2f %% |\n", name.c_str(), sum.rays / n, sum.seconds / n, worst_bound,
-              sum.missed / n, worst_missed, sum.objects / n, sum.lost_objects / n, 100.0 * sum.lost_triangles / n);
+  std::printf("| %s | %.0f | %.4f | %.2g | %.2g | %.2g | %.0f | %.1f | %.2f %% |\n", name.c_str(), sum.rays / n, sum.seconds / n,
+              worst_bound, sum.missed / n, worst_missed, sum.objects / n, sum.lost_objects / n, 100.0 * sum.lost_triangles / n);
 }
 
 // Fresh rays that count for `figures`, one for each of `sets`.
@@ -178,19 +173,9 @@ std::vector<Figures> Bench::compare_in_cell(std::uint64_t ordinal) const {
                        .bound = sets.back().missed_share_bound,
                        .objects = static_cast<double>(sets.back().objects.size())});
   };
-  time([&] {
-    return sample_visible_sets(world_.scene, *world_.raytracer, {region}, {.seed = 17 + ordinal}, 1, WorkBudget{}).front();
-  });
+  time([&] { return sample_visible_sets(world_.scene, *world_.raytracer, {region}, {.seed = 17 + ordinal}, 1, WorkBudget{}).front(); });
   time([&] { return UniformSampler(world_, region, rng).until_clean(); });
   for (const std::uint64_t building : kBuildingRays) time([&] { return UniformSampler(world_, region, rng).until_certified(building); });
-#ifdef OLD
-  time([&] {
-    const auto o = old::sample_visible_sets(world_.scene, *world_.raytracer, {region}, {200'000, 17 + ordinal}, 1, WorkBudget{}).front();
-    VisibleSet s;
-    s.objects = o.objects, s.missed_share_bound = o.certified ? 1e-4 : 1, s.rays = o.rays;
-    return s;
-  });
-#endif
   judge(region, sets, figures, rng);
   return figures;
 }
@@ -200,9 +185,10 @@ void Bench::compare(std::size_t count) const {
   parallel_for(count, world_.threads, WorkBudget{}, [&](std::size_t i) { found[i] = compare_in_cell(i); });
   std::vector<std::string> names = {"ours", "uniform, until 46,050 in a row find nothing"};
   for (const std::uint64_t rays : kBuildingRays) names.push_back("uniform, " + std::to_string(rays / 1000) + ",000, then our certificate");
-  names.push_back("old");
-  std::printf("| %zu cells | rays | seconds | highest bound | missed | highest missed | objects | lost | triangles lost |\n|---|---|---|---|---|---|---|---|---|\n",
-              count);
+  std::printf(
+      "| %zu cells | rays | seconds | highest bound | missed | highest missed | objects | lost | triangles lost "
+      "|\n|---|---|---|---|---|---|---|---|---|\n",
+      count);
   for (std::size_t k = 0; count > 0 && k < found.front().size(); ++k) {
     std::vector<Figures> of_one;
     for (const auto& cell : found) of_one.push_back(cell[k]);
@@ -218,8 +204,7 @@ std::vector<View> Bench::run(Rng& rng) const {
     if (glm::distance(start, other) < glm::distance(start, end)) end = other;
   }
   std::vector<View> views;
-  for (int i = 0; i < kFramesPerRun; ++i)
-    views.push_back({start + (i + 0.5) / kFramesPerRun * (end - start), glm::normalize(end - start)});
+  for (int i = 0; i < kFramesPerRun; ++i) views.push_back({start + (i + 0.5) / kFramesPerRun * (end - start), glm::normalize(end - start)});
   return views;
 }
 
@@ -254,12 +239,13 @@ void Bench::walk(std::size_t frames) const {
     sets.at(ids[i]) = sample_visible_sets(world_.scene, *world_.raytracer, {boxes[ids[i]]}, {.seed = ids[i]}, 1, WorkBudget{}).front();
   });
   std::vector<std::size_t> wrong(shown.size());
-  parallel_for(shown.size(), world_.threads, WorkBudget{}, [&](std::size_t i) { wrong[i] = wrong_pixels(shown[i].first, sets.at(shown[i].second)); });
+  parallel_for(shown.size(), world_.threads, WorkBudget{},
+               [&](std::size_t i) { wrong[i] = wrong_pixels(shown[i].first, sets.at(shown[i].second)); });
   std::size_t sum = 0, affected = 0;
   for (const std::size_t one : wrong) sum += one, affected += one > 0 ? 1 : 0;
   const double pixels = static_cast<double>(world_.camera.width) * world_.camera.height;
-  std::printf("| %zu frames of %.0f pixels in %zu cells | wrong pixels: %zu (%.2g of all), in %zu frames, %zu in the worst |\n", shown.size(), pixels,
-              sets.size(), sum, static_cast<double>(sum) / (pixels * static_cast<double>(shown.size())), affected,
+  std::printf("| %zu frames of %.0f pixels in %zu cells | wrong pixels: %zu (%.2g of all), in %zu frames, %zu in the worst |\n",
+              shown.size(), pixels, sets.size(), sum, static_cast<double>(sum) / (pixels * static_cast<double>(shown.size())), affected,
               wrong.empty() ? 0 : *std::max_element(wrong.begin(), wrong.end()));
 }
 
