@@ -1,8 +1,8 @@
 // Error against run time, stage by stage: what more time would buy (architecture.md, error against run time).
 //
-// Selection and baking report what happened on the way. Visibility, subdivision and baking are run once more on less (fewer rays, fewer
-// halvings, coarser texels), the first and the last on a few regions and impostors only, their seconds scaled up to all: together some
-// tens of percent of these stages' time.
+// Selection and baking report what happened on the way. Visibility, subdivision and baking are run once more on less (larger missed shares,
+// fewer halvings, coarser texels), the first and the last on a few regions and impostors only, their seconds scaled up to all: together
+// some tens of percent of these stages' time.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -18,7 +18,7 @@ namespace standin {
 
 /// Held-out median error of the target's time model, as its calibration learned. Work: timed frames.
 [[nodiscard]] nlohmann::json estimator_curve(const Target& target);
-/// Mean estimate of the missed share of rays, over at most 16 regions. Work: rays per region at most.
+/// Certified missed share of rays, by the share asked for, mean over at most 16 regions. Work: rays per region.
 [[nodiscard]] nlohmann::json visibility_curve(const World& world, const JobSpec& spec, const WorkBudget& budget);
 /// Highest bound of a region over the worst sampled view, by halvings in position. Work: cells. `subdivision`: the job's own, which took
 /// `seconds`.

@@ -41,7 +41,8 @@ struct JobSpec {
   std::uint64_t max_leaves = 20'000;
 
   std::string visibility = "auto";  // auto: where a probe finds occlusion; on; off
-  std::uint64_t visibility_rays = 200'000;
+  double visibility_missed_share = 1e-4;
+  std::uint64_t visibility_rays = 1'000'000;
 
   std::vector<double> apex_deg = {11.25, 22.5, 45.0, 90.0};
   double direction_step_deg = 11.25;

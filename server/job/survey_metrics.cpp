@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <string>
 
+#include "render/visibility/visible_set.h"
 #include "server/job/metrics.h"
 
 namespace standin {
@@ -12,6 +13,22 @@ using nlohmann::json;
 
 // Impostors that lower the highest bound by less than this are no help.
 constexpr double kHelpfulShare = 0.98;
+
+json visibility_json(const World& world, const StageClock& clock) {
+  const std::size_t cells = world.visibility.cells.size();
+  json figures = {{"cells", cells}, {"occlusion", world.occlusion}};
+  if (cells == 0) return figures;
+  const VisibilityFigures& sets = world.visible_sets;
+  figures["missed_share_max"] = sets.highest_missed_share;
+  figures["missed_share_mean"] = sets.mean_missed_share;
+  figures["confidence"] = kVisibilityConfidence;
+  figures["uncertified_cells"] = sets.uncertified_cells;
+  figures["worst_view_share"] = sets.worst_view_share;
+  figures["views"] = sets.views;
+  figures["rays"] = sets.rays;
+  figures["seconds_per_cell"] = clock.seconds().value("visibility", 0.0) / static_cast<double>(cells);
+  return figures;
+}
 
 json size_models_json(const SizeModels& sizes) {
   json models = json::object();
@@ -83,8 +100,7 @@ json common_metrics(const Surveyed& job, const StageClock& clock) {
   const World& world = job.world;
   return {{"scene", {{"name", world.scene.name}, {"objects", world.scene.objects.size()}, {"triangles", world.scene.triangle_count()}}},
           {"view_space", {{"why", world.view_space.why}, {"boxes", world.view_space.boxes.size()}}},
-          {"visibility",
-           {{"cells", world.visibility.cells.size()}, {"occlusion", world.occlusion}, {"missed_ray_share", world.missed_ray_share}}},
+          {"visibility", visibility_json(world, clock)},
           {"target",
            {{"id", job.target.id},
             {"coverage", job.target.model.coverage},

@@ -8,7 +8,8 @@
 
 #include "placement/view_space/cell_boxes.h"
 #include "render/base/error.h"
-#include "render/visibility/visible_set.h"
+#include "render/visibility/occlusion_probe.h"
+#include "render/visibility/visible_set_audit.h"
 
 namespace standin {
 namespace {
@@ -104,17 +105,33 @@ bool tells_anything(const Visibility& visibility, std::size_t objects) {
   return std::ranges::any_of(visibility.sets, [&](const auto& set) { return set.size() < objects; });
 }
 
+VisibilityFigures figures_of(const JobSpec& spec, const World& world, const std::vector<Box>& regions, const std::vector<VisibleSet>& sets,
+                             const WorkBudget& budget) {
+  VisibilityFigures figures;
+  for (const VisibleSet& set : sets) {
+    figures.highest_missed_share = std::max(figures.highest_missed_share, set.missed_share_bound);
+    figures.rays += set.rays;
+    if (set.missed_share_bound > spec.visibility_missed_share) ++figures.uncertified_cells;
+  }
+  VisibilityAuditOptions options;
+  options.seed = spec.seed;
+  const VisibilityAudit audit =
+      audit_visible_sets(world.scene, *world.raytracer, regions, sets, world.camera, options, world.threads, budget);
+  figures.mean_missed_share = audit.mean_missed_share_bound;
+  figures.worst_view_share = audit.worst_view_share;
+  figures.views = audit.views;
+  return figures;
+}
+
 void add_visibility(const JobSpec& spec, World& world, StageClock& clock, const WorkBudget& budget) {
   const std::vector<CellKey> keys = leaf_keys(world.view_space);
   const std::vector<Box> regions = boxes_of(world.view_space, keys);
   if (!wants_visibility(spec, world, regions, clock)) return;
-  const VisibilityOptions options{spec.visibility_rays, spec.seed};
+  const VisibilityOptions options{spec.visibility_rays, spec.visibility_missed_share, spec.seed};
   auto sets = sample_visible_sets(world.scene, *world.raytracer, regions, options, world.threads, budget);
+  world.visible_sets = figures_of(spec, world, regions, sets, budget);
   world.visibility.cells = keys;
-  for (auto& set : sets) {
-    world.missed_ray_share += set.missed_ray_share / static_cast<double>(sets.size());
-    world.visibility.sets.push_back(std::move(set.objects));
-  }
+  for (auto& set : sets) world.visibility.sets.push_back(std::move(set.objects));
   if (!tells_anything(world.visibility, world.scene.objects.size())) world.visibility = {};
 }
 

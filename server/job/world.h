@@ -22,6 +22,16 @@ namespace standin {
 [[nodiscard]] BakeQuality quality_of(const JobSpec& spec, ViewSpaceKind view_space);
 [[nodiscard]] int thread_count(const JobSpec& spec);
 
+/// How good the cells' visible sets are, and what they cost.
+struct VisibilityFigures {
+  double highest_missed_share = 0.0;    // certified for each cell at 99 %, of uniform rays
+  double mean_missed_share = 0.0;       // certified for the mean over the cells at 99 %
+  double worst_view_share = 0.0;        // of pixels, in the worst of the sampled views
+  std::uint64_t views = 0;              // sampled for it
+  std::uint64_t rays = 0;               // that the sets took, all cells together
+  std::uint64_t uncertified_cells = 0;  // whose rays were used up before the missed share asked for was certified
+};
+
 /// Stays where it is: the raytracer refers to the scene.
 struct World {
   World() = default;
@@ -34,9 +44,9 @@ struct World {
   ViewSpaceOptions view_space_options;
   std::unique_ptr<Raytracer> raytracer;
   ViewSpace view_space;
-  Visibility visibility;          // empty: left out
-  double occlusion = 0.0;         // what the probe found, 0..1
-  double missed_ray_share = 0.0;  // mean over the cells
+  Visibility visibility;   // empty: left out
+  double occlusion = 0.0;  // what the probe found, 0..1
+  VisibilityFigures visible_sets;
   BakeQuality quality;
   int threads = 1;
 };

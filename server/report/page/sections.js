@@ -105,7 +105,7 @@ function atlasSection({ pictures }) {
 }
 
 const CURVE_TITLES = {
-  estimator: "Time model: held-out error", visibility: "Visibility: missed share of rays", view_space: "View space: how loose the bounds are",
+  estimator: "Time model: held-out error", visibility: "Visibility: certified missed share of rays", view_space: "View space: how loose the bounds are",
   candidates: "Candidates: memory", select: "Selection: gap to the lower bound", bake_rounds: "Baking and repair: memory", bake: "Bake: texel size",
 };
 
