@@ -165,6 +165,10 @@ void add_part(PartSum most, PixelKind kind, double slenderness, double most_pass
   sum[kPixelTerm[static_cast<std::size_t>(kind)]] += most.pixels;
 }
 
+void cap_pixels(double most_passed_pixels, Features& features) {
+  for (const Term term : kPixelTerm) features[term] = std::min(features[term], most_passed_pixels);
+}
+
 void add_passed(const ScreenCoverage& coverage, Features& sum) {
   const auto passed = coverage.passed();
   for (std::size_t kind = 0; kind < kPixelKindCount; ++kind) sum[kPixelTerm[kind]] += passed[kind];
@@ -225,39 +229,38 @@ Features FeatureTable::estimate(std::uint32_t object, const PreparedView& view) 
   return features;
 }
 
-Features FeatureTable::bound(std::uint32_t object, const Box& eyes) const {
+template <class Visit>
+void FeatureTable::for_each_part(std::uint32_t object, const Box& eyes, Visit&& visit) const {
   if (eyes.empty()) throw Failure(ErrorWord::kInternal, "features of object " + std::to_string(object) + ": no eyes");
   const Object& drawn = scene_->objects[object];
-  const ProjectionFromBox projection(camera_, eyes);
   const PlacedMesh mesh(drawn.world_from_object, Mat3(1.0), Vec3(0.0));
   const bool maybe_near = distance(eyes, drawn.bounds) < shapes_[object].radius_m;
-  Features features = shapes_[object].counts;
   for (std::uint32_t p = drawn.first_part; p < drawn.first_part + drawn.part_count; ++p) {
     const Part& part = scene_->parts[p];
-    const PartStyle style = style_of(*scene_, part);
-    const SurfaceSamples& samples = samples_[part.mesh];
+    visit(samples_[part.mesh], mesh, style_of(*scene_, part), maybe_near);
+  }
+}
+
+Features FeatureTable::bound(std::uint32_t object, const Box& eyes) const {
+  const ProjectionFromBox projection(camera_, eyes);
+  Features features = shapes_[object].counts;
+  for_each_part(object, eyes, [&](const SurfaceSamples& samples, const PlacedMesh& mesh, const PartStyle& style, bool maybe_near) {
     PartSum most = most_from_box(samples.samples, mesh, style, projection);
     if (maybe_near) most = larger(most, most_from_box(samples.near_samples, mesh, style, projection));
     add_part(most, style.kind, samples.slenderness, most_passed_pixels_, features);
-  }
-  for (const Term term : kPixelTerm) features[term] = std::min(features[term], most_passed_pixels_);
+  });
+  cap_pixels(most_passed_pixels_, features);
   return features;
 }
 
 ObjectFromBox FeatureTable::from_box(std::uint32_t object, const Box& eyes) const {
-  if (eyes.empty()) throw Failure(ErrorWord::kInternal, "features of object " + std::to_string(object) + ": no eyes");
-  const Object& drawn = scene_->objects[object];
   const ProjectionFromBox projection(camera_, eyes);
-  const PlacedMesh mesh(drawn.world_from_object, Mat3(1.0), Vec3(0.0));
-  const bool maybe_near = distance(eyes, drawn.bounds) < shapes_[object].radius_m;
   ObjectFromBox result{shapes_[object].counts, {}};
-  for (std::uint32_t p = drawn.first_part; p < drawn.first_part + drawn.part_count; ++p) {
-    const Part& part = scene_->parts[p];
-    const PartStyle style = style_of(*scene_, part);
-    const SurfaceSamples& samples = samples_[part.mesh];
-    result.parts.push_back({style.kind, samples.slenderness, groups_from_box(samples.samples, mesh, style, projection, eyes), {}});
-    if (maybe_near) result.parts.back().near_samples = groups_from_box(samples.near_samples, mesh, style, projection, eyes);
-  }
+  for_each_part(object, eyes, [&](const SurfaceSamples& samples, const PlacedMesh& mesh, const PartStyle& style, bool maybe_near) {
+    const auto groups = [&](std::span<const SurfaceSample> of) { return groups_from_box(of, mesh, style, projection, eyes); };
+    result.parts.push_back({style.kind, samples.slenderness, groups(samples.samples), {}});
+    if (maybe_near) result.parts.back().near_samples = groups(samples.near_samples);
+  });
   return result;
 }
 
@@ -269,7 +272,7 @@ Features FeatureTable::bound(const ObjectFromBox& object, const Gaze& gaze) cons
         larger(most_in_gaze(part.samples, part.kind, gaze, cos_corner), most_in_gaze(part.near_samples, part.kind, gaze, cos_corner));
     add_part(most, part.kind, part.slenderness, most_passed_pixels_, features);
   }
-  for (const Term term : kPixelTerm) features[term] = std::min(features[term], most_passed_pixels_);
+  cap_pixels(most_passed_pixels_, features);
   return features;
 }
 

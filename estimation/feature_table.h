@@ -73,6 +73,9 @@ class FeatureTable {
   };
 
   [[nodiscard]] ObjectShape shape_of(const Object& object) const;
+  /// visit(samples, mesh in world space, style, whether an eye of the box may be within the object's radius).
+  template <class Visit>
+  void for_each_part(std::uint32_t object, const Box& eyes, Visit&& visit) const;
   void add(std::uint32_t object, const PreparedView& view, Features& sum, ScreenCoverage& coverage) const;
 
   const Scene* scene_;

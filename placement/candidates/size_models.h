@@ -32,9 +32,8 @@ struct SizeModel {
 class SizeModels {
  public:
   SizeModels() = default;
-  SizeModels(const SizeModel& of_layered) {
-    offer(Technique::kLayered, of_layered);
-  }  // NOLINT: the layered technique alone is the plain case
+  // NOLINTNEXTLINE: the layered technique alone is the plain case
+  SizeModels(const SizeModel& of_layered) { offer(Technique::kLayered, of_layered); }
 
   /// Offers the technique, or gives it another model.
   void offer(Technique technique, const SizeModel& model) { models_.at(static_cast<std::size_t>(technique)) = model; }

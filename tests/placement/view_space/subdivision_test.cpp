@@ -313,17 +313,7 @@ TEST(Subdivision, TheSameForAnyNumberOfThreads) {
   const Subdivision one = world.subdivide_for(budget_ms, model, {}, options);
   options.threads = 3;
   const Subdivision three = world.subdivide_for(budget_ms, model, {}, options);
-  ASSERT_EQ(one.cells.size(), three.cells.size());
-  ASSERT_EQ(one.cpvs.size(), three.cpvs.size());
-  EXPECT_EQ(one.intervals, three.intervals);
-  for (std::size_t i = 0; i < one.cpvs.size(); ++i) {
-    EXPECT_EQ(one.cpvs[i].cell, three.cpvs[i].cell);
-    EXPECT_EQ(one.cpvs[i].interval, three.cpvs[i].interval);
-    EXPECT_EQ(one.cpvs[i].predicted_ms, three.cpvs[i].predicted_ms);
-    EXPECT_EQ(one.cpvs[i].first_term, three.cpvs[i].first_term);
-  }
-  ASSERT_EQ(one.terms.size(), three.terms.size());
-  for (std::size_t i = 0; i < one.terms.size(); ++i) EXPECT_EQ(one.terms[i].object, three.terms[i].object);
+  expect_same(one, three);
 }
 
 TEST(Subdivision, VisibilityOnlyRemovesProblemViews) {
