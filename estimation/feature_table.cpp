@@ -9,43 +9,7 @@ namespace standin {
 namespace {
 
 constexpr std::uint32_t kSamplesPerMesh = 64;
-// Of a triangle, in pixels, by kind. A larger one costs by its pixels; and of the many triangles of a near object, a bound counts each at
-// its nearest: without a limit their edges alone would fill a region's budget (tests/bench/region_bound.md). Masked triangles are leaves,
-// many and near, and their pixels cost more: they have the lowest limit.
-constexpr std::array<double, kPixelKindCount> kMostEdgePixels = {64.0, 64.0, 16.0};
-
-double most_edge_pixels(PixelKind kind) {
-  return kMostEdgePixels[static_cast<std::size_t>(kind)];
-}
 constexpr std::array<Term, kPixelKindCount> kPixelTerm = {Term::kPlainPixels, Term::kTexturedPixels, Term::kMaskedPixels};
-
-/// The matrix that takes vector areas where `m` takes points.
-Mat3 cofactor(const Mat3& m) {
-  return {glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1])};
-}
-
-/// By how much lengths in all directions grow; root mean square where the axes differ.
-double length_scale(const Mat3& m) {
-  return std::sqrt((glm::dot(m[0], m[0]) + glm::dot(m[1], m[1]) + glm::dot(m[2], m[2])) / 3.0);
-}
-
-/// A mesh where it stands, in world or eye space.
-struct PlacedMesh {
-  PlacedMesh(const Mat4& world_from_mesh, const Mat3& rotation, const Vec3& shift)
-      : placed_from_mesh(rotation * Mat3(world_from_mesh)),
-        area_from_mesh((glm::determinant(Mat3(world_from_mesh)) < 0.0 ? -1.0 : 1.0) * cofactor(placed_from_mesh)),
-        origin(rotation * (Vec3(world_from_mesh[3]) - shift)),
-        scale(length_scale(Mat3(world_from_mesh))) {}
-
-  Mat3 placed_from_mesh;
-  Mat3 area_from_mesh;  // keeps front sides front under a mirroring transform, as the renderer does
-  Vec3 origin;
-  double scale;
-
-  [[nodiscard]] Patch place(const SurfaceSample& sample) const {
-    return {placed_from_mesh * sample.point + origin, area_from_mesh * sample.vector_area_m2, scale * sample.edges_m, sample.triangles};
-  }
-};
 
 /// How a part is drawn.
 struct PartStyle {
@@ -56,25 +20,6 @@ struct PartStyle {
 PartStyle style_of(const Scene& scene, const Part& part) {
   return {pixel_kind(scene, part), scene.materials[part.material].double_sided};
 }
-
-/// What a part shows, or may show at most.
-struct PartSum {
-  double triangles = 0.0;
-  double edge_pixels = 0.0;
-  double pixels = 0.0;  // generated
-
-  void add(const MostInImage& most, double inwards, PixelKind kind, double sample_triangles) {
-    triangles += sample_triangles;
-    edge_pixels += std::min(most.edge_pixels(inwards), most_edge_pixels(kind) * sample_triangles);
-    pixels += most.pixels(inwards);
-  }
-
-  /// No longer than the edges of so many triangles of twice the mesh's slenderness that share so many pixels (Cauchy and Schwarz): of a
-  /// large part near the eye, only as much as there is room for in the image. Monotone in all three, so a bound stays one.
-  void limit_edges(double slenderness, double most_pixels) {
-    edge_pixels = std::min(edge_pixels, 1.3 * slenderness * std::sqrt(triangles * std::min(pixels, most_pixels)));
-  }
-};
 
 /// What samples show in one image; their pixels go into its coverage, too.
 struct ImageSum {
@@ -110,52 +55,12 @@ PartSum most_from_box(const std::vector<SurfaceSample>& samples, const PlacedMes
   PartSum sum;
   for (const SurfaceSample& sample : samples) {
     const MostInImage most = projection.most(mesh.place(sample), style.double_sided);
-    if (most.faces) sum.add(most, 1.0, style.kind, sample.triangles);
+    if (!most.faces) continue;
+    sum.triangles += sample.triangles;
+    sum.edge_pixels += std::min(most.edge_pixels(), most_edge_pixels(style.kind) * sample.triangles);
+    sum.pixels += most.pixels();
   }
   return sum;
-}
-
-ObjectFromBox::Group group_of(std::vector<ObjectFromBox::Sample> samples) {
-  ObjectFromBox::Group group;
-  Box bounds;
-  for (const auto& sample : samples) bounds.extend(sample.bearing.point);
-  group.centre = bounds.centre();
-  for (const auto& sample : samples)
-    group.radius_m = std::max(group.radius_m, glm::length(sample.bearing.point - group.centre) + sample.bearing.reach_m);
-  group.samples = std::move(samples);
-  return group;
-}
-
-std::vector<ObjectFromBox::Group> groups_from_box(std::span<const SurfaceSample> samples, const PlacedMesh& mesh, const PartStyle& style,
-                                                  const ProjectionFromBox& projection, const Box& eyes) {
-  std::vector<ObjectFromBox::Group> groups;
-  for (std::size_t first = 0; first < samples.size(); first += kSampleGroup) {
-    std::vector<ObjectFromBox::Sample> facing;
-    for (const SurfaceSample& sample : samples.subspan(first, std::min(kSampleGroup, samples.size() - first))) {
-      const Patch patch = mesh.place(sample);
-      const MostInImage most = projection.most(patch, style.double_sided);
-      if (most.faces) facing.push_back({most, Bearing(patch.centre, most.reach_m, eyes), sample.triangles});
-    }
-    if (!facing.empty()) groups.push_back(group_of(std::move(facing)));
-  }
-  return groups;
-}
-
-/// The most that samples may show to any view of a gaze.
-PartSum most_in_gaze(const std::vector<ObjectFromBox::Group>& groups, PixelKind kind, const Gaze& gaze, double cos_corner) {
-  PartSum sum;
-  for (const ObjectFromBox::Group& group : groups) {
-    const auto planes = gaze.planes_across(group.centre, group.radius_m);
-    if (!planes) continue;
-    for (const ObjectFromBox::Sample& sample : group.samples)
-      if (const auto least_cosine = gaze.least_cosine(sample.bearing, *planes))
-        sum.add(sample.most, std::max(1.0, *least_cosine / cos_corner), kind, sample.triangles);
-  }
-  return sum;
-}
-
-PartSum larger(const PartSum& a, const PartSum& b) {
-  return {std::max(a.triangles, b.triangles), std::max(a.edge_pixels, b.edge_pixels), std::max(a.pixels, b.pixels)};
 }
 
 void add_part(PartSum most, PixelKind kind, double slenderness, double most_passed_pixels, Features& sum) {
@@ -257,9 +162,9 @@ ObjectFromBox FeatureTable::from_box(std::uint32_t object, const Box& eyes) cons
   const ProjectionFromBox projection(camera_, eyes);
   ObjectFromBox result{shapes_[object].counts, {}};
   for_each_part(object, eyes, [&](const SurfaceSamples& samples, const PlacedMesh& mesh, const PartStyle& style, bool maybe_near) {
-    const auto groups = [&](std::span<const SurfaceSample> of) { return groups_from_box(of, mesh, style, projection, eyes); };
-    result.parts.push_back({style.kind, samples.slenderness, groups(samples.samples), {}});
-    if (maybe_near) result.parts.back().near_samples = groups(samples.near_samples);
+    const auto blocks = [&](std::span<const SurfaceSample> of) { return facing_blocks(of, mesh, style.double_sided, projection, eyes); };
+    result.parts.push_back({style.kind, samples.slenderness, blocks(samples.samples), {}});
+    if (maybe_near) result.parts.back().near_samples = blocks(samples.near_samples);
   });
   return result;
 }

@@ -12,7 +12,8 @@
 #include <vector>
 
 #include "estimation/features.h"
-#include "estimation/gaze.h"
+#include "estimation/object_from_box.h"
+#include "estimation/placed_mesh.h"
 #include "estimation/projection.h"
 #include "estimation/screen_coverage.h"
 #include "estimation/surface_samples.h"
@@ -21,29 +22,6 @@ namespace standin {
 
 /// As the renderer draws it: a texture needs coordinates, and an alpha test needs a texture.
 [[nodiscard]] PixelKind pixel_kind(const Scene& scene, const Part& part);
-
-/// What the samples of an object may show at most to eyes in a box, for asking about many gazes.
-struct ObjectFromBox {
-  struct Sample {
-    MostInImage most;
-    Bearing bearing;
-    double triangles = 0.0;
-  };
-  /// Samples that face some eye and lie within a sphere.
-  struct Group {
-    Vec3 centre{0.0};
-    double radius_m = 0.0;
-    std::vector<Sample> samples;
-  };
-  struct Part {
-    PixelKind kind = PixelKind::kPlain;
-    double slenderness = 0.0;
-    std::vector<Group> samples;
-    std::vector<Group> near_samples;
-  };
-  Features counts;  // draws, triangles: the same for every view
-  std::vector<Part> parts;
-};
 
 /// `scene` must outlive the table. Const members may be called from several threads.
 class FeatureTable {

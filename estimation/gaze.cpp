@@ -1,30 +1,47 @@
 #include "estimation/gaze.h"
 
 #include <algorithm>
+#include <bit>
 
 namespace standin {
 namespace {
 
-// Points that a view sees must not be lost to rounding: of the coordinates, and of the cosines.
+namespace stdx = std::experimental;
+
+// Points that a view sees must not be lost to rounding: of coordinates, relatively, and of cosines. The cosines' is larger, since that of a
+// near point comes from coordinates as large as the box of eyes.
 constexpr double kRounding = 1e-12;
+constexpr double kCosineRounding = 1e-11;
+
+double sine(double cosine) {
+  return std::sqrt(std::max(0.0, 1.0 - cosine * cosine));
+}
+
+Lanes sine(const Lanes& cosine) {
+  return stdx::sqrt(stdx::max(Lanes(0.0), 1.0 - cosine * cosine));
+}
 
 }  // namespace
 
-Bearing::Bearing(const Vec3& patch_point, double patch_reach_m, const Box& eyes) : point(patch_point), reach_m(patch_reach_m) {
+void Bearings::set(std::size_t lane, const Vec3& world_point, double patch_reach_m, const Box& eyes) {
+  const Vec3 point = world_point - eyes.centre();
+  x[lane] = point.x, y[lane] = point.y, z[lane] = point.z;
   for (int i = 0; i < 8; ++i) {
-    const Vec3 line = point - eyes.corner(i);
-    const double length_m = glm::length(line);
-    from_corners[static_cast<std::size_t>(i)] = length_m > 0.0 ? line / length_m : Vec3(0.0);
+    const double distance_m = glm::length(world_point - eyes.corner(i));
+    per_metre[static_cast<std::size_t>(i)][lane] = distance_m > 0.0 ? 1.0 / distance_m : 0.0;
   }
-  if (reach_m <= 0.0) return;
-  sin_reach = std::min(1.0, reach_m / std::max(distance(point, eyes), reach_m));
-  cos_reach = std::sqrt(1.0 - sin_reach * sin_reach);
+  const double sin_of_reach =
+      patch_reach_m > 0.0 ? std::min(1.0, patch_reach_m / std::max(distance(world_point, eyes), patch_reach_m)) : 0.0;
+  sin_reach[lane] = sin_of_reach;
+  cos_reach[lane] = sine(sin_of_reach);
+  reach_m[lane] = patch_reach_m + kRounding * (std::abs(world_point.x) + std::abs(world_point.y) + std::abs(world_point.z));
 }
 
-Gaze::Gaze(const DirectionCone& cone, const Box& eyes, const Camera& camera) : cone_(&cone) {
-  const Vec3 reach = glm::max(glm::abs(eyes.min), glm::abs(eyes.max));
-  for (const Vec3& normal : cone.plane_normals)
-    sides_.push_back({normal, eyes.support(normal) + kRounding * (reach.x + reach.y + reach.z)});
+Gaze::Gaze(const DirectionCone& cone, const Box& eyes, const Camera& camera) : axis_(cone.axis) {
+  const Vec3 centre = eyes.centre(), half_size = 0.5 * eyes.size();
+  for (int i = 0; i < 8; ++i) corner_along_[static_cast<std::size_t>(i)] = glm::dot(axis_, eyes.corner(i) - centre);
+  for (const Vec3& normal : cone.plane_normals) sides_.push_back({normal, (1.0 + kRounding) * glm::dot(glm::abs(normal), half_size)});
+  all_sides_ = (1U << sides_.size()) - 1U;
   const double corner_rad = camera.half_diagonal_rad();
   const double turn_rad = std::max(0.0, cone.half_angle_rad - corner_rad);
   cos_corner_ = std::cos(corner_rad);
@@ -32,31 +49,37 @@ Gaze::Gaze(const DirectionCone& cone, const Box& eyes, const Camera& camera) : c
 }
 
 std::optional<std::uint32_t> Gaze::planes_across(const Vec3& centre, double radius_m) const {
-  const double reach_m = radius_m + kRounding * (std::abs(centre.x) + std::abs(centre.y) + std::abs(centre.z) + radius_m);
   std::uint32_t across = 0;
   for (std::size_t i = 0; i < sides_.size(); ++i) {
     const double beyond_m = glm::dot(sides_[i].outward, centre) - sides_[i].most;
-    if (beyond_m > reach_m) return std::nullopt;
-    if (beyond_m > -reach_m) across |= 1U << i;
+    if (beyond_m > radius_m) return std::nullopt;
+    if (beyond_m > -radius_m) across |= 1U << i;
   }
   return across;
 }
 
-std::optional<double> Gaze::least_cosine(const Bearing& patch, std::uint32_t planes) const {
-  const double reach_m = patch.reach_m + kRounding * (std::abs(patch.point.x) + std::abs(patch.point.y) + std::abs(patch.point.z));
-  for (std::size_t i = 0; i < sides_.size() && (planes >> i) != 0; ++i)
-    if ((planes >> i & 1U) != 0 && glm::dot(sides_[i].outward, patch.point) > sides_[i].most + reach_m) return std::nullopt;
-  double cos_off = 1.0;  // from the axis
-  for (const Vec3& line : patch.from_corners) {
-    cos_off = std::min(cos_off, glm::dot(line, cone_->axis));
-    if (cos_off <= cos_corner_) return cos_corner_;
+LaneRow Gaze::least_cosines(const Bearings& patches, std::uint32_t planes) const {
+  LaneRow least;
+  for (std::size_t lane = 0; lane < kLanes; lane += Lanes::size()) {
+    const Lanes x = lanes_at(patches.x, lane), y = lanes_at(patches.y, lane), z = lanes_at(patches.z, lane);
+    const Lanes reach_m = lanes_at(patches.reach_m, lane);
+    Lanes::mask_type out(false);
+    for (std::uint32_t left = planes & all_sides_; left != 0; left &= left - 1) {
+      const Side& side = sides_[static_cast<std::size_t>(std::countr_zero(left))];
+      out = out || side.outward.x * x + side.outward.y * y + side.outward.z * z > side.most + reach_m;
+    }
+    const Lanes along = axis_.x * x + axis_.y * y + axis_.z * z;
+    Lanes off(1.0);  // cosine of the angle from the axis
+    for (std::size_t k = 0; k < corner_along_.size(); ++k)
+      off = stdx::min(off, (along - corner_along_[k]) * lanes_at(patches.per_metre[k], lane));
+    off -= kCosineRounding;
+    // Where an angle is a right one or more, so that a sum's cosine need not fall with it, it stays below the corner's all the same.
+    const Lanes far = off * lanes_at(patches.cos_reach, lane) - sine(off) * lanes_at(patches.sin_reach, lane);
+    Lanes cosine = stdx::max(far * cos_turn_ - sine(far) * sin_turn_ - kRounding, Lanes(cos_corner_));
+    stdx::where(out, cosine) = 0.0;
+    cosine.copy_to(&least[lane], stdx::element_aligned);
   }
-  const double sin_off = std::sqrt(1.0 - cos_off * cos_off);
-  // Both angles are less than a right one, so the sum's cosine falls with it; the same for the turn.
-  const double cos_far = cos_off * patch.cos_reach - sin_off * patch.sin_reach;
-  if (cos_far <= cos_corner_) return cos_corner_;
-  const double sin_far = std::sqrt(1.0 - cos_far * cos_far);
-  return std::max(cos_corner_, cos_far * cos_turn_ - sin_far * sin_turn_ - kRounding);
+  return least;
 }
 
 }  // namespace standin

@@ -86,7 +86,7 @@ struct Projection {
   }
 };
 
-/// What a patch seen from anywhere in a box may be at most, `inwards` times deeper than in the image's corner (>= 1).
+/// What a patch seen from anywhere in a box may be at most.
 struct MostInImage {
   bool faces = false;         // some eye
   double reach_m = 0.0;       // of its parts from its centre; 0 where it is small
@@ -95,11 +95,8 @@ struct MostInImage {
   double softening_m2 = 0.0;
   double edges_px_m = 0.0;
 
-  [[nodiscard]] double pixels(double inwards = 1.0) const {
-    const double depth_m = inwards * corner_depth_m;
-    return facing_px_m2 / (depth_m * (depth_m * depth_m + softening_m2));
-  }
-  [[nodiscard]] double edge_pixels(double inwards = 1.0) const { return edges_px_m / (inwards * corner_depth_m); }
+  [[nodiscard]] double pixels() const { return facing_px_m2 / (corner_depth_m * (corner_depth_m * corner_depth_m + softening_m2)); }
+  [[nodiscard]] double edge_pixels() const { return edges_px_m / corner_depth_m; }
 };
 
 /// The same for all eyes in a box and all directions of view: an upper bound, and never less for a larger box.

@@ -13,8 +13,10 @@ struct Node {
 
 class Search {
  public:
-  Search(const RegionEstimator& estimator, CellCosts& cell, double budget_ms) : estimator_(estimator), cell_(cell), budget_ms_(budget_ms) {
-    result_.worst_predicted_ms = -1.0;
+  Search(const RegionEstimator& estimator, CellCosts& cell, double budget_ms, const DirectionSearchResult* looser)
+      : estimator_(estimator), cell_(cell), budget_ms_(budget_ms), looser_(looser) {
+    result_.worst_predicted_ms = looser != nullptr ? looser->worst_predicted_ms : -1.0;
+    if (looser != nullptr) result_.worst_interval = looser->worst_interval;
   }
 
   DirectionSearchResult run() {
@@ -23,7 +25,8 @@ class Search {
     std::vector<Node> faces;
     for (int face = 0; face < kFaceCount; ++face) faces.push_back(make_node({static_cast<Face>(face), 0, 0, 0}, all));
     visit(faces);
-    std::sort(result_.hot.begin(), result_.hot.end(), [](const HotRegion& a, const HotRegion& b) { return a.interval < b.interval; });
+    std::ranges::sort(result_.hot, {}, &HotRegion::interval);
+    result_.terms.shrink_to_fit();
     return std::move(result_);
   }
 
@@ -56,28 +59,51 @@ class Search {
   }
 
   void take_leaf(const Node& leaf) {
-    const auto sums = estimator_.sums_above(cell_, leaf.interval, leaf.seen, std::min(budget_ms_, result_.worst_predicted_ms));
-    if (!sums) return;
-    const double predicted_ms = sums->predicted_ms();
-    if (predicted_ms > result_.worst_predicted_ms) {
-      result_.worst_predicted_ms = predicted_ms;
+    if (const HotRegion* known = known_region(leaf.interval)) return result_.add(*known, looser_->terms_of(*known));
+    const auto bound = estimator_.bound_above(cell_, leaf.interval, leaf.seen, std::min(budget_ms_, result_.worst_predicted_ms));
+    if (!bound) return;
+    if (bound->predicted_ms > result_.worst_predicted_ms) {
+      result_.worst_predicted_ms = bound->predicted_ms;
       result_.worst_interval = leaf.interval;
     }
-    if (predicted_ms <= budget_ms_) return;
-    result_.hot.push_back({leaf.interval, predicted_ms, result_.seen.size(), leaf.seen.size()});
-    result_.seen.insert(result_.seen.end(), leaf.seen.begin(), leaf.seen.end());
+    if (bound->predicted_ms > budget_ms_)
+      result_.add({leaf.interval, bound->pixels_capped, bound->constant_ms, bound->predicted_ms}, bound->terms);
+  }
+
+  [[nodiscard]] const HotRegion* known_region(const DirectionInterval& interval) const {
+    if (looser_ == nullptr) return nullptr;
+    const auto at = std::ranges::lower_bound(looser_->hot, interval, {}, &HotRegion::interval);
+    return at != looser_->hot.end() && at->interval == interval ? &*at : nullptr;
   }
 
   const RegionEstimator& estimator_;
   CellCosts& cell_;
   double budget_ms_;
+  const DirectionSearchResult* looser_;
   DirectionSearchResult result_;
 };
 
 }  // namespace
 
-DirectionSearchResult search_directions(const RegionEstimator& estimator, CellCosts& cell, double predicted_budget_ms) {
-  return Search(estimator, cell, predicted_budget_ms).run();
+void DirectionSearchResult::add(HotRegion region, std::span<const RegionTerm> its_terms) {
+  region.first_term = terms.size();
+  region.term_count = its_terms.size();
+  hot.push_back(region);
+  terms.insert(terms.end(), its_terms.begin(), its_terms.end());
+}
+
+DirectionSearchResult search_directions(const RegionEstimator& estimator, CellCosts& cell, double predicted_budget_ms,
+                                        const DirectionSearchResult* looser) {
+  return Search(estimator, cell, predicted_budget_ms, looser).run();
+}
+
+DirectionSearchResult at_looser_budget(const DirectionSearchResult& found, double predicted_budget_ms) {
+  DirectionSearchResult loose;
+  loose.worst_predicted_ms = found.worst_predicted_ms;
+  loose.worst_interval = found.worst_interval;
+  for (const HotRegion& region : found.hot)
+    if (region.predicted_ms > predicted_budget_ms) loose.add(region, found.terms_of(region));
+  return loose;
 }
 
 }  // namespace standin

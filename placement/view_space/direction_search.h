@@ -9,26 +9,33 @@
 
 namespace standin {
 
-/// A leaf region over budget, with the range of its objects in DirectionSearchResult::seen.
+/// A leaf region over budget: its bound, with the range of its terms in DirectionSearchResult::terms.
 struct HotRegion {
   DirectionInterval interval;
-  double predicted_ms = 0.0;  // its bound
-  std::size_t first_seen = 0;
-  std::size_t seen_count = 0;
+  bool pixels_capped = false;  // as in RegionBound
+  double constant_ms = 0.0;
+  double predicted_ms = 0.0;
+  std::size_t first_term = 0;
+  std::size_t term_count = 0;
 };
 
 struct DirectionSearchResult {
-  std::vector<HotRegion> hot;       // sorted by interval
-  std::vector<std::uint32_t> seen;  // indices into CellCosts::objects, ascending per region: a quarter of the memory of terms
+  std::vector<HotRegion> hot;  // sorted by interval
+  std::vector<RegionTerm> terms;
   double worst_predicted_ms = 0.0;  // over all leaf regions of the cell
   DirectionInterval worst_interval;
 
-  [[nodiscard]] std::span<const std::uint32_t> seen_in(const HotRegion& region) const {
-    return std::span(seen).subspan(region.first_seen, region.seen_count);
+  [[nodiscard]] std::span<const RegionTerm> terms_of(const HotRegion& region) const {
+    return std::span(terms).subspan(region.first_term, region.term_count);
   }
+  void add(HotRegion region, std::span<const RegionTerm> its_terms);
 };
 
-/// All leaf intervals whose bound exceeds the budget, and the worst one in any case.
-[[nodiscard]] DirectionSearchResult search_directions(const RegionEstimator& estimator, CellCosts& cell, double predicted_budget_ms);
+/// All leaf intervals whose bound exceeds the budget, and the worst one in any case. `looser`: what a search of the same cell at a higher
+/// budget found, or none; its regions are taken over.
+[[nodiscard]] DirectionSearchResult search_directions(const RegionEstimator& estimator, CellCosts& cell, double predicted_budget_ms,
+                                                      const DirectionSearchResult* looser = nullptr);
+/// What a search at a higher budget would return.
+[[nodiscard]] DirectionSearchResult at_looser_budget(const DirectionSearchResult& found, double predicted_budget_ms);
 
 }  // namespace standin

@@ -1,6 +1,7 @@
 #include "placement/view_space/region_bound.h"
 
 #include <algorithm>
+#include <limits>
 #include <numeric>
 #include <string>
 
@@ -97,7 +98,7 @@ double RegionEstimator::coarse_bound_ms(const CellCosts& cell, const DirectionIn
 }
 
 RegionBound RegionEstimator::region_bound(CellCosts& cell, const DirectionInterval& interval) const {
-  return bound_of(cell, interval, seen_in(cell, interval));
+  return bound_above(cell, interval, seen_in(cell, interval), -std::numeric_limits<double>::infinity()).value();
 }
 
 // Never above the cost for any direction, whatever the rounding: the search relies on it.
@@ -109,9 +110,23 @@ Cost RegionEstimator::cost_in(CellCosts& cell, std::uint32_t index, const Gaze& 
   return {std::min(sharp.fixed_ms, any.cost.fixed_ms), std::min(sharp.pixel_ms, any.cost.pixel_ms)};
 }
 
+RegionBound RegionEstimator::bound_of(const CellCosts& cell, std::span<const std::uint32_t> seen, std::span<const Cost> costs) const {
+  RegionSums sums = empty_frame();
+  for (const Cost& cost : costs) sums.add(cost);
+  RegionBound bound;
+  bound.pixels_capped = sums.pixels_capped();
+  bound.constant_ms = bound.pixels_capped ? empty_frame().capped_ms : empty_frame().with_pixels_ms;
+  bound.predicted_ms = sums.predicted_ms();
+  for (std::size_t k = 0; k < seen.size(); ++k) {
+    const double predicted_ms = bound.pixels_capped ? costs[k].fixed_ms : costs[k].fixed_ms + costs[k].pixel_ms;
+    if (predicted_ms > 0.0) bound.terms.push_back({cell.objects[seen[k]].object, predicted_ms});
+  }
+  return bound;
+}
+
 // The dearest objects are looked at first: a few near ones mostly decide.
-std::optional<RegionSums> RegionEstimator::sums_above(CellCosts& cell, const DirectionInterval& interval,
-                                                      std::span<const std::uint32_t> seen, double predicted_ms) const {
+std::optional<RegionBound> RegionEstimator::bound_above(CellCosts& cell, const DirectionInterval& interval,
+                                                        std::span<const std::uint32_t> seen, double predicted_ms) const {
   std::vector<Cost> costs;
   RegionSums sums = empty_frame();
   for (const std::uint32_t i : seen) sums.add(costs.emplace_back(cell.objects[i].cost));
@@ -125,25 +140,8 @@ std::optional<RegionSums> RegionEstimator::sums_above(CellCosts& cell, const Dir
     sums.add({sharp.fixed_ms - costs[k].fixed_ms, sharp.pixel_ms - costs[k].pixel_ms});
     costs[k] = sharp;
   }
-  sums = empty_frame();
-  for (const Cost& cost : costs) sums.add(cost);
-  if (sums.predicted_ms() <= predicted_ms) return std::nullopt;
-  return sums;
-}
-
-RegionBound RegionEstimator::bound_of(CellCosts& cell, const DirectionInterval& interval, std::span<const std::uint32_t> seen) const {
-  const Gaze gaze(directions_.cone(interval), cell.chain.front(), features_.camera());
-  std::vector<Cost> costs;
-  RegionSums sums = empty_frame();
-  for (const std::uint32_t i : seen) sums.add(costs.emplace_back(cost_in(cell, i, gaze)));
-  RegionBound bound;
-  bound.pixels_capped = sums.pixels_capped();
-  bound.constant_ms = bound.pixels_capped ? empty_frame().capped_ms : empty_frame().with_pixels_ms;
-  bound.predicted_ms = sums.predicted_ms();
-  for (std::size_t k = 0; k < seen.size(); ++k) {
-    const double predicted_ms = bound.pixels_capped ? costs[k].fixed_ms : costs[k].fixed_ms + costs[k].pixel_ms;
-    if (predicted_ms > 0.0) bound.terms.push_back({cell.objects[seen[k]].object, predicted_ms});
-  }
+  RegionBound bound = bound_of(cell, seen, costs);
+  if (bound.predicted_ms <= predicted_ms) return std::nullopt;
   return bound;
 }
 

@@ -87,11 +87,10 @@ class RegionEstimator {
   [[nodiscard]] bool may_see(const DirectionInterval& interval, const CellCosts& cell, const Box& bounds) const;
   /// The bound of one region from scratch: what subdivide() finds, for a checker. Uses every ancestor of `interval`.
   [[nodiscard]] RegionBound region_bound(CellCosts& cell, const DirectionInterval& interval) const;
-  /// The same from the objects already known to be seen (indices into cell.objects, ascending).
-  [[nodiscard]] RegionBound bound_of(CellCosts& cell, const DirectionInterval& interval, std::span<const std::uint32_t> seen) const;
-  /// The bound's sums where it exceeds `predicted_ms`, else nothing: cheaper, as most regions need not be summed up to the end.
-  [[nodiscard]] std::optional<RegionSums> sums_above(CellCosts& cell, const DirectionInterval& interval,
-                                                     std::span<const std::uint32_t> seen, double predicted_ms) const;
+  /// The same from the objects already known to be seen (indices into cell.objects, ascending), where it exceeds `predicted_ms`; else
+  /// nothing: cheaper, as most regions need not be summed up to the end.
+  [[nodiscard]] std::optional<RegionBound> bound_above(CellCosts& cell, const DirectionInterval& interval,
+                                                       std::span<const std::uint32_t> seen, double predicted_ms) const;
   /// Not less than region_bound(), and cheap.
   [[nodiscard]] double coarse_bound_ms(const CellCosts& cell, const DirectionInterval& interval) const;
 
@@ -102,6 +101,7 @@ class RegionEstimator {
  private:
   [[nodiscard]] std::vector<std::uint32_t> seen_in(const CellCosts& cell, const DirectionInterval& interval) const;
   [[nodiscard]] Cost cost_in(CellCosts& cell, std::uint32_t index, const Gaze& gaze) const;
+  [[nodiscard]] RegionBound bound_of(const CellCosts& cell, std::span<const std::uint32_t> seen, std::span<const Cost> costs) const;
 
   const Scene* scene_;
   const std::vector<std::uint32_t>* rank_;

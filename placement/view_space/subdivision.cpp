@@ -12,7 +12,7 @@
 namespace standin {
 namespace {
 
-/// A cell that has been searched. Terms are made at the very end, from `found` and the cell's costs: they are most of the memory.
+/// A cell that has been searched.
 struct SearchedCell {
   Cell cell;
   std::vector<Box> chain;
@@ -57,7 +57,7 @@ class Subdivider {
     return done;
   }
 
-  // The terms of each cell's CPVs, in order; a searched cell is freed once its terms are made.
+  // The terms of each cell's CPVs, in order; a searched cell is freed once its terms are taken over.
   [[nodiscard]] Subdivision assemble(std::vector<SearchedCell> searched) const {
     Subdivision result;
     result.intervals = used_intervals(searched);
@@ -68,7 +68,7 @@ class Subdivider {
       budget_.check();
       result.worst_predicted_ms = std::max(result.worst_predicted_ms, one.cell.worst_predicted_ms);
       result.cells.push_back(one.cell);
-      add_cpvs(one, result);
+      add_cpvs(one.found, result);
       one = {};
     }
     return result;
@@ -104,11 +104,10 @@ class Subdivider {
 
   [[nodiscard]] DirectionSearchResult search(const SearchedCell& of) const {
     const double predicted_ms = options_.predicted_budget_ms;
-    if (memory_ != nullptr)
-      if (auto known = memory_->recall(of.cell.key, predicted_ms)) return *std::move(known);
+    const auto known = memory_ != nullptr ? memory_->recall(of.cell.key) : nullptr;
+    if (known != nullptr && known->predicted_budget_ms <= predicted_ms) return at_looser_budget(known->found, predicted_ms);
     CellCosts costs = costs_of(of.cell, of.chain);
-    DirectionSearchResult found = search_directions(estimator_, costs, predicted_ms);
-    found.seen.shrink_to_fit();
+    DirectionSearchResult found = search_directions(estimator_, costs, predicted_ms, known != nullptr ? &known->found : nullptr);
     if (memory_ != nullptr) memory_->keep(of.cell.key, predicted_ms, found);
     return found;
   }
@@ -150,23 +149,21 @@ class Subdivider {
   }
 
   void count(const SearchedCell& searched) {
-    terms_ += searched.found.seen.size();
+    terms_ += searched.found.terms.size();
     cpvs_ += searched.found.hot.size();
   }
 
   [[nodiscard]] bool within_limits() const { return terms_ <= options_.max_terms && cpvs_ <= options_.max_cpvs; }
 
   // CPVs of the last cell of `result`.
-  void add_cpvs(const SearchedCell& searched, Subdivision& result) const {
-    if (searched.found.hot.empty()) return;
-    CellCosts costs = costs_of(searched.cell, searched.chain);
+  static void add_cpvs(const DirectionSearchResult& found, Subdivision& result) {
     const auto cell = static_cast<std::uint32_t>(result.cells.size() - 1);
-    for (const HotRegion& region : searched.found.hot) {
-      const RegionBound bound = estimator_.bound_of(costs, region.interval, searched.found.seen_in(region));
+    for (const HotRegion& region : found.hot) {
       const auto at = std::lower_bound(result.intervals.begin(), result.intervals.end(), region.interval);
-      result.cpvs.push_back({cell, static_cast<std::uint32_t>(at - result.intervals.begin()), bound.pixels_capped, bound.constant_ms,
-                             bound.predicted_ms, result.terms.size(), static_cast<std::uint32_t>(bound.terms.size())});
-      result.terms.insert(result.terms.end(), bound.terms.begin(), bound.terms.end());
+      result.cpvs.push_back({cell, static_cast<std::uint32_t>(at - result.intervals.begin()), region.pixels_capped, region.constant_ms,
+                             region.predicted_ms, result.terms.size(), static_cast<std::uint32_t>(region.term_count)});
+      const auto terms = found.terms_of(region);
+      result.terms.insert(result.terms.end(), terms.begin(), terms.end());
     }
   }
 
@@ -186,7 +183,7 @@ class Subdivider {
       const std::size_t first = next;
       auto batch = search_children(frontier, child_tasks(frontier, next));
       for (std::size_t i = first; i < next; ++i) {
-        terms_ -= frontier[i].found.seen.size();
+        terms_ -= frontier[i].found.terms.size();
         cpvs_ -= frontier[i].found.hot.size();
         frontier[i] = {};
       }

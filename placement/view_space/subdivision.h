@@ -59,7 +59,7 @@ struct SubdivisionOptions {
   int threads = 1;
   double predicted_budget_ms = 0.0;  // a region is a CPV when its predicted bound exceeds this
   // Hot cells are no longer halved beyond either; the leaf cubes themselves are always searched in full.
-  std::uint64_t max_terms = 20'000'000;  // 20 bytes each while it runs
+  std::uint64_t max_terms = 20'000'000;  // 16 bytes each, twice while it runs
   std::uint64_t max_cpvs = 1'000'000;
 };
 

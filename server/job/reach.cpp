@@ -6,10 +6,9 @@
 namespace standin {
 namespace {
 
-// Thresholds are tried from this share of the worst bound downwards; a scene that can be brought below the last one is called reachable
-// there.
-constexpr double kFirstShare = 0.6;
-constexpr double kNextShare = 0.6;
+// The first threshold is this share of the worst bound, each later one at least this share of the one before; a scene that can be brought
+// below the last one is called reachable there.
+constexpr double kShare = 0.6;
 constexpr double kLeastShare = 0.03;
 
 Subdivision subdivide_at(const World& world, const TimeModel& model, double predicted_ms, const WorkBudget& budget,
@@ -49,8 +48,8 @@ ReachSummary summarise_reach(const World& world, const TimeModel& model, const S
   ReachSummary summary;
   summary.known = true;
   double worst_ms = whole.worst_predicted_ms;
-  for (double share = kFirstShare; share > kLeastShare; share *= kNextShare) {
-    const double threshold_ms = share * whole.worst_predicted_ms;
+  double threshold_ms = kShare * worst_ms;
+  while (threshold_ms > kLeastShare * whole.worst_predicted_ms) {
     summary.subdivision = subdivide_at(world, model, threshold_ms, budget, searches);
     worst_ms = std::min(worst_ms, summary.subdivision.worst_predicted_ms);
     const Reach reach =
@@ -58,9 +57,10 @@ ReachSummary summarise_reach(const World& world, const TimeModel& model, const S
     summary.reachable_ms.clear();
     for (const double predicted : reach.predicted_ms) summary.reachable_ms.push_back(std::max(predicted, threshold_ms));
     const auto worst = std::ranges::max_element(reach.predicted_ms);
-    if (worst == reach.predicted_ms.end()) continue;
-    summary.blockers = reach.blockers[static_cast<std::size_t>(worst - reach.predicted_ms.begin())];
-    if (*worst > threshold_ms) break;
+    const double reached_ms = worst != reach.predicted_ms.end() ? *worst : 0.0;
+    if (worst != reach.predicted_ms.end()) summary.blockers = reach.blockers[static_cast<std::size_t>(worst - reach.predicted_ms.begin())];
+    if (reached_ms >= threshold_ms) break;
+    threshold_ms = std::max(reached_ms, kShare * threshold_ms);
   }
   summary.regions = leaf_regions(summary.subdivision, world.view_space_options);
   const double fill_ms = summary.reachable_ms.empty() ? worst_ms : *std::ranges::min_element(summary.reachable_ms);

@@ -1,8 +1,9 @@
 // How low the budget may go: the lowest bound that all, 99 %, 90 % of the views can be brought under by any candidates (feasibility before
 // selection).
 //
-// Regions whose bound is below a threshold need no impostor to stay below it, so the tree DP runs only over the regions above one; the
-// threshold is lowered until some region cannot get below it, and the greatest reachable time is exact from there on.
+// Regions whose bound is below a threshold need no impostor to stay below it, so the tree DP runs only over the regions above one. The
+// threshold is lowered, never below what some region can be brought to, until some region cannot get below it: the greatest reachable time
+// is exact from there on. The quantiles are upper bounds: every region below the threshold counts as much as it.
 #pragma once
 
 #include <cstdint>

@@ -136,21 +136,30 @@ TEST(Subdivision, MemoryOfOtherBudgetsChangesNothing) {
   EXPECT_GE(cpvs.size(), 5U);
 }
 
-TEST(SearchMemory, RecallsNoBudgetTighterThanItHas) {
+TEST(SearchMemory, RecallsTheLastSearchOfACell) {
   SearchMemory memory;
   const CellKey cell{3, {1, 2, 3}};
+  EXPECT_EQ(memory.recall(cell), nullptr);
+  memory.keep(cell, 6.0, {});
+  memory.keep(cell, 5.0, {});
+  EXPECT_EQ(memory.recall(cell)->predicted_budget_ms, 5.0);
+  EXPECT_EQ(memory.recall({3, {1, 2, 4}}), nullptr);
+}
+
+TEST(DirectionSearch, ALooserBudgetKeepsWhatExceedsIt) {
   DirectionSearchResult found;
-  found.hot = {{{Face::kPosX, 2, 0, 0}, 7.0, 1, 1}, {{Face::kPosX, 2, 1, 0}, 9.0, 0, 1}};
-  found.seen = {4, 5};
-  memory.keep(cell, 6.0, found);
-  EXPECT_FALSE(memory.recall(cell, 5.9));
-  EXPECT_FALSE(memory.recall({3, {1, 2, 4}}, 6.0));
-  EXPECT_EQ(memory.recall(cell, 6.0)->hot.size(), 2U);
-  const auto looser = memory.recall(cell, 7.0);  // a bound of just the budget is within it
-  ASSERT_EQ(looser->hot.size(), 1U);
-  EXPECT_EQ(looser->hot[0].predicted_ms, 9.0);
-  EXPECT_THAT(looser->seen_in(looser->hot[0]), testing::ElementsAre(4U));
-  EXPECT_TRUE(memory.recall(cell, 9.0)->hot.empty());
+  found.add({{Face::kPosX, 2, 0, 0}, false, 1.0, 7.0}, std::vector<RegionTerm>{{4, 6.0}});
+  found.add({{Face::kPosX, 2, 1, 0}, true, 2.0, 9.0}, std::vector<RegionTerm>{{5, 3.0}, {6, 4.0}});
+  found.worst_predicted_ms = 9.0;
+  EXPECT_EQ(at_looser_budget(found, 6.0).hot.size(), 2U);
+  const auto looser = at_looser_budget(found, 7.0);  // a bound of just the budget is within it
+  ASSERT_EQ(looser.hot.size(), 1U);
+  EXPECT_EQ(looser.hot[0].predicted_ms, 9.0);
+  EXPECT_TRUE(looser.hot[0].pixels_capped);
+  ASSERT_EQ(looser.terms.size(), 2U);
+  EXPECT_EQ(looser.terms_of(looser.hot[0])[1].object, 6U);
+  EXPECT_EQ(looser.worst_predicted_ms, 9.0);
+  EXPECT_TRUE(at_looser_budget(found, 9.0).hot.empty());
 }
 
 // The search against a plain evaluation of every leaf region from scratch.
@@ -364,7 +373,13 @@ TEST(Subdivision, TheSmallerLinearFormIsChosen) {
     for (const RegionTerm& term : found.terms_of(cpv))
       seen.push_back(
           static_cast<std::uint32_t>(std::ranges::find(costs.objects, term.object, &ObjectCost::object) - costs.objects.begin()));
-    const RegionSums sums = estimator.sums_above(costs, found.intervals[cpv.interval], seen, -1.0).value();
+    const Gaze gaze(estimator.directions().cone(found.intervals[cpv.interval]), costs.chain.front(), world.camera);
+    RegionSums sums = estimator.empty_frame();
+    for (const std::uint32_t i : seen) {
+      const Cost sharp =
+          model.cost(estimator.features().bound(estimator.features().from_box(costs.objects[i].object, costs.chain.front()), gaze));
+      sums.add({std::min(sharp.fixed_ms, costs.objects[i].cost.fixed_ms), std::min(sharp.pixel_ms, costs.objects[i].cost.pixel_ms)});
+    }
     EXPECT_EQ(cpv.pixels_capped, sums.capped_ms < sums.with_pixels_ms);
     EXPECT_EQ(cpv.predicted_ms, std::min(sums.capped_ms, sums.with_pixels_ms));
     EXPECT_NEAR(cpv.constant_ms, model.milliseconds_per_unit[0] + (cpv.pixels_capped ? most_pixel_ms : 0.0), 1e-12);
