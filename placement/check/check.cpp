@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numeric>
 #include <optional>
@@ -152,12 +153,13 @@ class Checker {
       ++regions;
       const auto is_slow = [&](double bound_ms) { return bound_ms > input_.budget_ms * (1.0 + kRelativeTolerance); };
       if (!is_slow(input_.model.bound_ms(estimator_.coarse_bound_ms(costs, interval)))) continue;
-      if (interval.level < estimator_.directions().leaf_level()) {
+      double bound_ms = std::numeric_limits<double>::infinity();
+      if (interval.level >= estimator_.first_sharp_level())
+        bound_ms = input_.model.bound_ms(estimator_.region_bound(costs, interval).predicted_ms);
+      if (!is_slow(bound_ms)) continue;
+      if (interval.level < estimator_.directions().leaf_level())
         for (int k = 0; k < 4; ++k) pending.push_back(interval.child(k));
-        continue;
-      }
-      const double bound_ms = input_.model.bound_ms(estimator_.region_bound(costs, interval).predicted_ms);
-      if (is_slow(bound_ms))
+      else
         findings.push_back({Violation::kMissingRegion, cell_id,
                             "cell " + std::to_string(cell_id) + ": face " + std::string(face_frame(interval.face).name) + " interval " +
                                 std::to_string(interval.i) + "," + std::to_string(interval.j) + " has a bound of " +

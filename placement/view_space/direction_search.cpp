@@ -8,6 +8,7 @@ namespace {
 struct Node {
   DirectionInterval interval;
   std::vector<std::uint32_t> seen;  // indices into CellCosts::objects, ascending: hierarchy order
+  std::vector<Cost> costs;          // of these, at most
   RegionSums sums;
 };
 
@@ -20,8 +21,11 @@ class Search {
   }
 
   DirectionSearchResult run() {
-    std::vector<std::uint32_t> all(cell_.objects.size());
-    for (std::uint32_t i = 0; i < all.size(); ++i) all[i] = i;
+    Node all;
+    for (std::uint32_t i = 0; i < cell_.objects.size(); ++i) {
+      all.seen.push_back(i);
+      all.costs.push_back(cell_.objects[i].cost);
+    }
     std::vector<Node> faces;
     for (int face = 0; face < kFaceCount; ++face) faces.push_back(make_node({static_cast<Face>(face), 0, 0, 0}, all));
     visit(faces);
@@ -31,43 +35,50 @@ class Search {
   }
 
  private:
-  [[nodiscard]] Node make_node(const DirectionInterval& interval, const std::vector<std::uint32_t>& parent_seen) const {
-    Node node{interval, {}, estimator_.empty_frame()};
-    for (const std::uint32_t i : parent_seen) {
-      if (!estimator_.may_see(interval, cell_, cell_.objects[i].bounds)) continue;
-      node.seen.push_back(i);
-      node.sums.add(cell_.objects[i].cost);
+  [[nodiscard]] Node make_node(const DirectionInterval& interval, const Node& parent) const {
+    Node node{interval, {}, {}, estimator_.empty_frame()};
+    for (std::size_t k = 0; k < parent.seen.size(); ++k) {
+      if (!estimator_.may_see(interval, cell_, cell_.objects[parent.seen[k]].bounds)) continue;
+      node.seen.push_back(parent.seen[k]);
+      node.costs.push_back(parent.costs[k]);
+      node.sums.add(parent.costs[k]);
     }
     return node;
   }
+
+  [[nodiscard]] double threshold_ms() const { return std::min(budget_ms_, result_.worst_predicted_ms); }
 
   // Highest bound first, so that the worst region is met early and prunes the rest.
   void visit(std::vector<Node>& siblings) {
     std::stable_sort(siblings.begin(), siblings.end(),
                      [](const Node& a, const Node& b) { return a.sums.predicted_ms() > b.sums.predicted_ms(); });
-    for (const Node& node : siblings) {
-      const double predicted_ms = node.sums.predicted_ms();
-      if (predicted_ms <= budget_ms_ && predicted_ms <= result_.worst_predicted_ms) return;
-      if (node.interval.level == estimator_.directions().leaf_level()) {
+    for (Node& node : siblings) {
+      if (node.sums.predicted_ms() <= threshold_ms()) return;
+      if (node.interval.level == estimator_.directions().leaf_level())
         take_leaf(node);
-        continue;
-      }
-      std::vector<Node> children;
-      for (int k = 0; k < 4; ++k) children.push_back(make_node(node.interval.child(k), node.seen));
-      visit(children);
+      else if (node.interval.level < estimator_.first_sharp_level() || is_above(node))
+        visit_children(node);
     }
   }
 
-  void take_leaf(const Node& leaf) {
+  [[nodiscard]] bool is_above(Node& node) { return estimator_.sharpen(cell_, node.interval, node.seen, node.costs, threshold_ms()); }
+
+  void visit_children(const Node& node) {
+    std::vector<Node> children;
+    for (int k = 0; k < 4; ++k) children.push_back(make_node(node.interval.child(k), node));
+    visit(children);
+  }
+
+  void take_leaf(Node& leaf) {
     if (const HotRegion* known = known_region(leaf.interval)) return result_.add(*known, looser_->terms_of(*known));
-    const auto bound = estimator_.bound_above(cell_, leaf.interval, leaf.seen, std::min(budget_ms_, result_.worst_predicted_ms));
-    if (!bound) return;
-    if (bound->predicted_ms > result_.worst_predicted_ms) {
-      result_.worst_predicted_ms = bound->predicted_ms;
+    if (!is_above(leaf)) return;
+    const RegionBound bound = estimator_.bound_of(cell_, leaf.seen, leaf.costs);
+    if (bound.predicted_ms > result_.worst_predicted_ms) {
+      result_.worst_predicted_ms = bound.predicted_ms;
       result_.worst_interval = leaf.interval;
     }
-    if (bound->predicted_ms > budget_ms_)
-      result_.add({leaf.interval, bound->pixels_capped, bound->constant_ms, bound->predicted_ms}, bound->terms);
+    if (bound.predicted_ms > budget_ms_)
+      result_.add({leaf.interval, bound.pixels_capped, bound.constant_ms, bound.predicted_ms}, bound.terms);
   }
 
   [[nodiscard]] const HotRegion* known_region(const DirectionInterval& interval) const {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 #include <numeric>
+#include <ranges>
 #include <string>
 
 #include "render/base/error.h"
@@ -98,16 +99,20 @@ double RegionEstimator::coarse_bound_ms(const CellCosts& cell, const DirectionIn
 }
 
 RegionBound RegionEstimator::region_bound(CellCosts& cell, const DirectionInterval& interval) const {
-  return bound_above(cell, interval, seen_in(cell, interval), -std::numeric_limits<double>::infinity()).value();
+  const std::vector<std::uint32_t> seen = seen_in(cell, interval);
+  std::vector<Cost> costs;
+  for (const std::uint32_t i : seen) costs.push_back(cell.objects[i].cost);
+  std::vector<DirectionInterval> chain;
+  for (DirectionInterval node = interval; node.level >= first_sharp_level(); node = node.parent()) chain.push_back(node);
+  for (const DirectionInterval& node : std::views::reverse(chain))
+    (void)sharpen(cell, node, seen, costs, -std::numeric_limits<double>::infinity());
+  return bound_of(cell, seen, costs);
 }
 
-// Never above the cost for any direction, whatever the rounding: the search relies on it.
 Cost RegionEstimator::cost_in(CellCosts& cell, std::uint32_t index, const Gaze& gaze) const {
-  const ObjectCost& any = cell.objects[index];
   auto& samples = cell.samples[index];
-  if (!samples) samples = features_.from_box(any.object, cell.chain.front());
-  const Cost sharp = model_->cost(features_.bound(*samples, gaze));
-  return {std::min(sharp.fixed_ms, any.cost.fixed_ms), std::min(sharp.pixel_ms, any.cost.pixel_ms)};
+  if (!samples) samples = features_.from_box(cell.objects[index].object, cell.chain.front());
+  return model_->cost(features_.bound(*samples, gaze));
 }
 
 RegionBound RegionEstimator::bound_of(const CellCosts& cell, std::span<const std::uint32_t> seen, std::span<const Cost> costs) const {
@@ -125,24 +130,24 @@ RegionBound RegionEstimator::bound_of(const CellCosts& cell, std::span<const std
 }
 
 // The dearest objects are looked at first: a few near ones mostly decide.
-std::optional<RegionBound> RegionEstimator::bound_above(CellCosts& cell, const DirectionInterval& interval,
-                                                        std::span<const std::uint32_t> seen, double predicted_ms) const {
-  std::vector<Cost> costs;
+bool RegionEstimator::sharpen(CellCosts& cell, const DirectionInterval& interval, std::span<const std::uint32_t> seen,
+                              std::span<Cost> costs, double predicted_ms) const {
   RegionSums sums = empty_frame();
-  for (const std::uint32_t i : seen) sums.add(costs.emplace_back(cell.objects[i].cost));
+  for (const Cost& cost : costs) sums.add(cost);
   std::vector<std::uint32_t> dearest(seen.size());
   std::iota(dearest.begin(), dearest.end(), 0U);
   std::ranges::stable_sort(dearest, std::ranges::greater(), [&](std::uint32_t k) { return costs[k].fixed_ms + costs[k].pixel_ms; });
   const Gaze gaze(directions_.cone(interval), cell.chain.front(), features_.camera());
   for (const std::uint32_t k : dearest) {
-    if (sums.predicted_ms() <= (1.0 - kRounding) * predicted_ms) return std::nullopt;
+    if (sums.predicted_ms() <= (1.0 - kRounding) * predicted_ms) return false;
     const Cost sharp = cost_in(cell, seen[k], gaze);
-    sums.add({sharp.fixed_ms - costs[k].fixed_ms, sharp.pixel_ms - costs[k].pixel_ms});
-    costs[k] = sharp;
+    const Cost lower{std::min(sharp.fixed_ms, costs[k].fixed_ms), std::min(sharp.pixel_ms, costs[k].pixel_ms)};
+    sums.add({lower.fixed_ms - costs[k].fixed_ms, lower.pixel_ms - costs[k].pixel_ms});
+    costs[k] = lower;
   }
-  RegionBound bound = bound_of(cell, seen, costs);
-  if (bound.predicted_ms <= predicted_ms) return std::nullopt;
-  return bound;
+  sums = empty_frame();
+  for (const Cost& cost : costs) sums.add(cost);
+  return sums.predicted_ms() > predicted_ms;
 }
 
 }  // namespace standin

@@ -5,13 +5,14 @@
 // face. Its cost bound is that of the cell's own box (the least over the chain: a smaller box never has a larger one). Child
 // regions are therefore never bounded above their parents, object by object.
 //
-// That cost holds for any direction, cheaply, and is what the search prunes by. Of a leaf region that it leaves, every object is looked at
-// again, sample by sample (estimation/gaze.h): what of it no view of the region sees costs nothing.
+// That cost holds for any direction, cheaply, and is what the search prunes by at first. Of a region of the finest levels that it leaves,
+// every object is looked at again, sample by sample (estimation/gaze.h): what of it no view of the region sees costs nothing.
 //
 // Pixel work saturates (screen_coverage.h), so a region has two linear bounds: all terms with their pixels, or terms without and as many of
 // the costliest pixels as can pass. The smaller is chosen.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -87,10 +88,13 @@ class RegionEstimator {
   [[nodiscard]] bool may_see(const DirectionInterval& interval, const CellCosts& cell, const Box& bounds) const;
   /// The bound of one region from scratch: what subdivide() finds, for a checker. Uses every ancestor of `interval`.
   [[nodiscard]] RegionBound region_bound(CellCosts& cell, const DirectionInterval& interval) const;
-  /// The same from the objects already known to be seen (indices into cell.objects, ascending), where it exceeds `predicted_ms`; else
-  /// nothing: cheaper, as most regions need not be summed up to the end.
-  [[nodiscard]] std::optional<RegionBound> bound_above(CellCosts& cell, const DirectionInterval& interval,
-                                                       std::span<const std::uint32_t> seen, double predicted_ms) const;
+  /// Intervals of this level and finer ones are bounded sample by sample.
+  [[nodiscard]] int first_sharp_level() const { return std::max(0, directions_.leaf_level() - kSharpLevels + 1); }
+  /// Lowers `costs` (of the objects `seen`: indices into cell.objects, ascending), which hold for an interval that holds this one, to what
+  /// holds for this one; up to the end where their sum exceeds `predicted_ms`, which is returned.
+  [[nodiscard]] bool sharpen(CellCosts& cell, const DirectionInterval& interval, std::span<const std::uint32_t> seen, std::span<Cost> costs,
+                             double predicted_ms) const;
+  [[nodiscard]] RegionBound bound_of(const CellCosts& cell, std::span<const std::uint32_t> seen, std::span<const Cost> costs) const;
   /// Not less than region_bound(), and cheap.
   [[nodiscard]] double coarse_bound_ms(const CellCosts& cell, const DirectionInterval& interval) const;
 
@@ -99,9 +103,11 @@ class RegionEstimator {
   [[nodiscard]] const TimeModel& model() const { return *model_; }
 
  private:
+  // A wide interval sees too much to be worth it.
+  static constexpr int kSharpLevels = 2;
+
   [[nodiscard]] std::vector<std::uint32_t> seen_in(const CellCosts& cell, const DirectionInterval& interval) const;
   [[nodiscard]] Cost cost_in(CellCosts& cell, std::uint32_t index, const Gaze& gaze) const;
-  [[nodiscard]] RegionBound bound_of(const CellCosts& cell, std::span<const std::uint32_t> seen, std::span<const Cost> costs) const;
 
   const Scene* scene_;
   const std::vector<std::uint32_t>* rank_;

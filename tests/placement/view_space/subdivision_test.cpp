@@ -373,13 +373,13 @@ TEST(Subdivision, TheSmallerLinearFormIsChosen) {
     for (const RegionTerm& term : found.terms_of(cpv))
       seen.push_back(
           static_cast<std::uint32_t>(std::ranges::find(costs.objects, term.object, &ObjectCost::object) - costs.objects.begin()));
-    const Gaze gaze(estimator.directions().cone(found.intervals[cpv.interval]), costs.chain.front(), world.camera);
+    std::vector<Cost> costs_in;
+    for (const std::uint32_t i : seen) costs_in.push_back(costs.objects[i].cost);
+    const DirectionInterval& interval = found.intervals[cpv.interval];
+    for (const DirectionInterval& node : {interval.parent(), interval})
+      ASSERT_TRUE(estimator.sharpen(costs, node, seen, costs_in, -1.0));
     RegionSums sums = estimator.empty_frame();
-    for (const std::uint32_t i : seen) {
-      const Cost sharp =
-          model.cost(estimator.features().bound(estimator.features().from_box(costs.objects[i].object, costs.chain.front()), gaze));
-      sums.add({std::min(sharp.fixed_ms, costs.objects[i].cost.fixed_ms), std::min(sharp.pixel_ms, costs.objects[i].cost.pixel_ms)});
-    }
+    for (const Cost& cost : costs_in) sums.add(cost);
     EXPECT_EQ(cpv.pixels_capped, sums.capped_ms < sums.with_pixels_ms);
     EXPECT_EQ(cpv.predicted_ms, std::min(sums.capped_ms, sums.with_pixels_ms));
     EXPECT_NEAR(cpv.constant_ms, model.milliseconds_per_unit[0] + (cpv.pixels_capped ? most_pixel_ms : 0.0), 1e-12);
