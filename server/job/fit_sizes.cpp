@@ -1,5 +1,7 @@
 #include "server/job/fit_sizes.h"
 
+#include <limits>
+
 namespace standin {
 namespace {
 
@@ -32,12 +34,20 @@ SizeModel fit_sizes(const Surveyed& job, const Subdivision& probe, Technique tec
 
 }  // namespace
 
-SizeModels fit_sizes(const Surveyed& job, const Subdivision& whole, const JobSpec& spec, const WorkBudget& budget) {
+// The slow regions of some cells, enough for typical candidates. They do not depend on a budget, so that all budgets share the models.
+Subdivision probe_views(const Surveyed& job, const WorkBudget& budget) {
+  constexpr std::size_t kProbedLeaves = 256;
+  constexpr double kProbeShare = 0.6;
+  const std::size_t stride = (leaf_keys(job.world.view_space).size() + kProbedLeaves - 1) / kProbedLeaves;
+  const double worst_ms = problem_views(job, std::numeric_limits<double>::infinity(), budget, stride).worst_predicted_ms;
+  return problem_views(job, kProbeShare * worst_ms, budget, stride);
+}
+
+SizeModels fit_sizes(const Surveyed& job, const JobSpec& spec, const WorkBudget& budget) {
   SizeModels sizes;
   for (const Technique technique : techniques_of(spec)) sizes.offer(technique, default_size_model(technique));
   if (spec.size_bakes == 0) return sizes;
-  constexpr double kProbeShare = 0.6;  // enough slow regions for typical candidates
-  const Subdivision probe = problem_views(job, kProbeShare * whole.worst_predicted_ms, budget);
+  const Subdivision probe = probe_views(job, budget);
   for (const Technique technique : techniques_of(spec)) sizes.offer(technique, fit_sizes(job, probe, technique, spec, budget));
   return sizes;
 }

@@ -6,7 +6,7 @@
 
 namespace standin {
 
-/// One model per technique that the job offers. `whole`: the regions of the view space, without a budget.
-[[nodiscard]] SizeModels fit_sizes(const Surveyed& job, const Subdivision& whole, const JobSpec& spec, const WorkBudget& budget);
+/// One model per technique that the job offers; the same for every budget.
+[[nodiscard]] SizeModels fit_sizes(const Surveyed& job, const JobSpec& spec, const WorkBudget& budget);
 
 }  // namespace standin

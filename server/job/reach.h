@@ -31,7 +31,7 @@ struct ReachSummary {
 /// `whole`: the regions of the view space, without a budget. `searches`: of the same world, looked at and added to; or none.
 [[nodiscard]] ReachSummary summarise_reach(const World& world, const TimeModel& model, const Subdivision& whole, const SizeModels& sizes,
                                            const CandidateOptions& options, const WorkBudget& budget, SearchMemory* searches);
-/// The same where nobody asks how low the budget may go, since `problem` has no problem view: worst_bound_ms alone is known.
+/// The same where nobody asks how low the budget may go: worst_bound_ms alone is known.
 [[nodiscard]] ReachSummary without_reach(const TimeModel& model, Subdivision problem);
 
 /// Value at rank floor(share * (total - 1)) of `values` filled up with `fill` to `total` entries, fill being no greater than any of them.

@@ -59,8 +59,9 @@ std::string names_of(const std::vector<std::uint32_t>& objects, const Scene& sce
 std::string verdict(const Surveyed& job) {
   const ReachSummary& reach = job.reach;
   const std::string without = milliseconds(reach.worst_bound_ms);
-  if (!reach.known) return "no view needs impostors: every bound is within " + without;
   const double worst_ms = job.survey.worst_frame_ms;
+  if (!reach.known)
+    return "without impostors every view can be promised " + without + "; the worst sampled view is estimated at " + milliseconds(worst_ms);
   const std::string promise = "every view can be promised " + milliseconds(reach.all_ms) + ", without them " + without +
                               "; the worst sampled view is estimated at " + milliseconds(worst_ms);
   if (reach.all_ms < worst_ms) return "impostors help: " + promise;

@@ -17,20 +17,27 @@ CandidateOptions candidate_options_of(const JobSpec& spec, int threads) {
   return options;
 }
 
-// What impostors could do for the worst views; where the placement at hand has no problem view, nobody asks.
-void add_reach(Surveyed& job, const JobSpec& spec, const Subdivision* problem, StageClock& clock, const WorkBudget& budget) {
-  const World& world = job.world;
-  const TimeModel& model = job.target.model;
-  if (problem != nullptr && problem->cpvs.empty() && !forced(spec, "candidates")) {
+void add_sizes(Surveyed& job, const JobSpec& spec, const Subdivision* problem, StageClock& clock, const WorkBudget& budget) {
+  if (problem != nullptr && problem->cpvs.empty() && !forced(spec, "candidates"))
     clock.skip("size_model", kNoProblemViews);
-    clock.leave_out("survey", std::string(kNoProblemViews) + ", so nobody asks how low the budget could go");
+  else
+    job.sizes = clock.run("size_model", [&] { return fit_sizes(job, spec, budget); });
+}
+
+// What impostors could do for the worst views.
+void add_reach(Surveyed& job, const JobSpec& spec, const Subdivision* problem, StageClock& clock, const WorkBudget& budget) {
+  const TimeModel& model = job.target.model;
+  if (problem != nullptr && !forced(spec, "candidates")) {
+    clock.leave_out("survey", problem->cpvs.empty()
+                                  ? std::string(kNoProblemViews) + ", so nobody asks how low the budget could go"
+                                  : "how low another budget might go: the selection says it of each region it cannot solve");
     job.reach = without_reach(model, *problem);
     return;
   }
-  const Subdivision whole = clock.run("survey", [&] { return problem_views(job, std::numeric_limits<double>::infinity(), budget); });
-  job.sizes = clock.run("size_model", [&] { return fit_sizes(job, whole, spec, budget); });
-  job.reach = clock.run("survey",
-                        [&] { return summarise_reach(world, model, whole, job.sizes, job.candidate_options, budget, job.searches.get()); });
+  job.reach = clock.run("survey", [&] {
+    const Subdivision whole = problem_views(job, std::numeric_limits<double>::infinity(), budget);
+    return summarise_reach(job.world, model, whole, job.sizes, job.candidate_options, budget, job.searches.get());
+  });
 }
 
 }  // namespace
@@ -41,16 +48,18 @@ void load_job(const JobFiles& files, const JobSpec& spec, StageClock& clock, con
   job.candidate_options = candidate_options_of(spec, job.world.threads);
 }
 
-Subdivision problem_views(const Surveyed& job, double predicted_budget_ms, const WorkBudget& budget) {
+Subdivision problem_views(const Surveyed& job, double predicted_budget_ms, const WorkBudget& budget, std::size_t leaf_stride) {
   const World& world = job.world;
   SubdivisionOptions options;
   options.threads = world.threads;
   options.predicted_budget_ms = predicted_budget_ms;
+  options.leaf_stride = leaf_stride;
   return subdivide(world.scene, world.hierarchy.rank, world.view_space, world.visibility, job.target.model, world.camera,
                    world.view_space_options, options, budget, job.searches.get());
 }
 
 void survey_scene(Surveyed& job, const JobSpec& spec, const Subdivision* problem, StageClock& clock, const WorkBudget& budget) {
+  add_sizes(job, spec, problem, clock, budget);
   add_reach(job, spec, problem, clock, budget);
   clock.run("survey", [&] {
     SurveyOptions options;

@@ -30,7 +30,7 @@ test("survey says how low the budget may go, and place gets there", () => {
   const { metrics } = resultOf(placed);
   assert.ok(metrics.cpv.count > 0 && metrics.impostors.count > 0, "there is something to place");
   assert.equal(metrics.cpv.solved, metrics.cpv.count);
-  for (const key of Object.keys(survey).filter((name) => name.endsWith("_ms"))) assert.equal(metrics.survey[key], survey[key], key);
+  for (const key of ["p50_frame_ms", "p90_frame_ms", "p99_frame_ms", "worst_bound_ms"]) assert.equal(metrics.survey[key], survey[key], key);
 });
 
 test("the result's files are there, and no staged one", () => {

@@ -13,7 +13,7 @@ const { placement, metrics } = resultOf(placed);
 const kMetrics = `
   scene.objects scene.triangles budget_ms cpv.count cpv.solved cpv.unsolved candidates.generated candidates.pruned impostors.count
   memory.texture_bytes memory.geometry_bytes memory.total_bytes memory.atlas_padding_bytes bound.memory_lower_bound_bytes
-  survey.worst_frame_ms survey.p99_frame_ms survey.worst_bound_ms survey.reachable_all_ms survey.reachable_p99_ms survey.reachable_p90_ms
+  survey.worst_frame_ms survey.p99_frame_ms survey.worst_bound_ms
   verify.views verify.over_budget_estimated image.views image.gap_pixels image.max_parallax_ratio image.silhouette_bloat_px image.mean_error image.mean_flip
   stages_s.load stages_s.visibility stages_s.view_space stages_s.candidates stages_s.select stages_s.bake stages_s.verify
   peak_rss_bytes`.trim().split(/\s+/);
@@ -74,6 +74,9 @@ test("the Khronos validator finds no error in impostors.glb, and every impostor 
 
 test("metrics.json has its fields, all numbers are finite, and sums add up", () => {
   for (const path of kMetrics) assert.equal(typeof at(metrics, path), "number", path);
+  for (const path of ["survey.reachable_all_ms", "survey.reachable_p99_ms", "survey.reachable_p90_ms"])
+    assert.equal(at(metrics, path), null, `${path}: the survey's to say`);
+  assert.ok(metrics.left_out.some(({ stage, reason }) => stage === "survey" && /how low another budget/.test(reason)));
   assert.ok(metrics.bound.gap >= 0 && metrics.bound.gap <= 1, `bound.gap ${metrics.bound.gap}`);
   for (const path of ["verify.over_budget_measured", "verify.frame_ms_before.p50", "verify.frame_ms_before.p99", "verify.frame_ms_before.max",
                       "verify.frame_ms_after.p50", "verify.frame_ms_after.p99", "verify.frame_ms_after.max"])
