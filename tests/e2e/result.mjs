@@ -84,7 +84,7 @@ test("metrics.json has its fields, all numbers are finite, and sums add up", () 
   assert.ok(Array.isArray(metrics.left_out));
   // JSON has no NaN; a writer that met one leaves a null, so nulls may stand only for what was not measured, or for no CPV.
   for (const [path, value] of leaves(metrics))
-    if (value === null) assert.match(path, /^verify\.(over_budget_measured|worst_over_budget|measured_coverage|worst_before_over_surveyed|frame_ms_|frames\.)/, `${path} is null`);
+    if (value === null) assert.match(path, /^survey\.reachable_|^verify\.(over_budget_measured|worst_over_budget|measured_coverage|worst_before_over_surveyed|frame_ms_|frames\.)/, `${path} is null`);
   assert.equal(metrics.memory.texture_bytes + metrics.memory.geometry_bytes, metrics.memory.total_bytes);
   assert.equal(metrics.cpv.solved + metrics.cpv.unsolved, metrics.cpv.count);
   assert.ok(metrics.bound.memory_lower_bound_bytes <= metrics.memory.texture_bytes);
