@@ -31,11 +31,10 @@ json curves_json(const Surveyed& job, const JobSpec& spec, const Subdivision& su
                  std::span<const Impostor> impostors, const StageClock& clock, const WorkBudget& budget) {
   const World& world = job.world;
   const TimeModel& model = job.target.model;
-  const std::vector<double> laps = clock.laps("view_space");
   return {{"estimator", estimator_curve(job.target)},
           {"visibility", visibility_curve(world, spec, budget)},
-          {"view_space", view_space_curve(world, model, subdivision, laps.back() - laps[laps.size() - 2],
-                                          model.predicted_budget_ms(spec.budget_ms), job.survey.worst_frame_ms, budget)},
+          {"view_space",
+           view_space_curve(world, model, subdivision, model.predicted_budget_ms(spec.budget_ms), job.survey.worst_frame_ms, budget)},
           {"select", select_curve(selected, clock)},
           {"bake_rounds", bake_rounds_curve(selected, clock)},
           {"bake", bake_curve(world, impostors, budget)}};

@@ -113,12 +113,10 @@ class Subdivider {
   }
 
   [[nodiscard]] std::vector<SearchedCell> search_leaves() const {
-    const auto& leaves = cell_boxes_.leaves();
-    std::vector<SearchedCell> searched((leaves.size() + options_.leaf_stride - 1) / options_.leaf_stride);
-    parallel_for(searched.size(), options_.threads, budget_, [&](std::size_t i) {
-      const CellKey& leaf = leaves[i * options_.leaf_stride];
-      searched[i] = search(leaf, cell_boxes_.chain(leaf), visible_set_of(leaf));
-    });
+    const auto& leaves = options_.leaves.empty() ? cell_boxes_.leaves() : options_.leaves;
+    std::vector<SearchedCell> searched(leaves.size());
+    parallel_for(leaves.size(), options_.threads, budget_,
+                 [&](std::size_t i) { searched[i] = search(leaves[i], cell_boxes_.chain(leaves[i]), visible_set_of(leaves[i])); });
     return searched;
   }
 

@@ -61,7 +61,7 @@ struct SubdivisionOptions {
   // Hot cells are no longer halved beyond either; the leaf cubes themselves are always searched in full.
   std::uint64_t max_terms = 20'000'000;  // 16 bytes each, twice while it runs
   std::uint64_t max_cpvs = 1'000'000;
-  std::size_t leaf_stride = 1;  // of the leaf cubes every so many-th alone: a sample of the view space, not all of it
+  std::vector<CellKey> leaves;  // these of leaf_keys() alone, sorted: a part of the view space; empty: all
 };
 
 /// Visible sets belong to cubes of the leaf level: `visible_sets[i]` to `visible_cells[i]` (sorted); empty: no visibility. Finer cells

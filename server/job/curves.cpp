@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <chrono>
+#include <functional>
+#include <map>
 #include <numeric>
 
 #include "render/base/error.h"
@@ -16,6 +18,7 @@ namespace {
 using nlohmann::json;
 
 constexpr std::size_t kRegions = 16;
+constexpr std::size_t kLeaves = 32;
 constexpr std::size_t kImpostors = 8;
 
 json point(double seconds, double work, double error, const char* unit) {
@@ -42,6 +45,23 @@ std::vector<double> last_laps(std::vector<double> laps, std::size_t count, std::
   laps.resize(laps.size() - std::min(laps.size(), after));
   if (laps.size() > count) laps.erase(laps.begin(), laps.end() - static_cast<std::ptrdiff_t>(count));
   return laps;
+}
+
+/// Those that hold the cells with the highest bounds, sorted.
+std::vector<CellKey> slowest_leaves(const Subdivision& subdivision, int leaf_level) {
+  std::map<CellKey, double> worst_ms;
+  for (const Cell& cell : subdivision.cells) {
+    CellKey leaf = cell.key;
+    while (leaf.level > leaf_level) leaf = leaf.parent();
+    worst_ms[leaf] = std::max(worst_ms[leaf], cell.worst_predicted_ms);
+  }
+  std::vector<std::pair<CellKey, double>> order(worst_ms.begin(), worst_ms.end());
+  std::ranges::stable_sort(order, std::ranges::greater(), &std::pair<CellKey, double>::second);
+  order.resize(std::min(order.size(), kLeaves));
+  std::vector<CellKey> leaves;
+  for (const auto& [leaf, ms] : order) leaves.push_back(leaf);
+  std::ranges::sort(leaves);
+  return leaves;
 }
 
 /// Texture bytes of an impostor baked with other texels; as it is where that is impossible.
@@ -87,27 +107,24 @@ json visibility_curve(const World& world, const JobSpec& spec, const WorkBudget&
   return curve;
 }
 
-json view_space_curve(const World& world, const TimeModel& model, const Subdivision& subdivision, double seconds,
-                      double predicted_budget_ms, double worst_sampled_ms, const WorkBudget& budget) {
-  constexpr const char* kUnit = "highest bound over worst sampled view";
+json view_space_curve(const World& world, const TimeModel& model, const Subdivision& subdivision, double predicted_budget_ms,
+                      double worst_sampled_ms, const WorkBudget& budget) {
+  constexpr const char* kUnit = "highest bound over worst sampled view, of the slowest leaf cubes";
   json curve = json::array();
   if (!(worst_sampled_ms > 0.0)) return curve;
-  const auto add = [&](double taken, const Subdivision& found) {
-    curve.push_back(point(taken, static_cast<double>(found.cells.size()), found.worst_predicted_ms / worst_sampled_ms, kUnit));
-  };
   SubdivisionOptions options;
   options.threads = world.threads;
   options.predicted_budget_ms = predicted_budget_ms;
+  options.leaves = slowest_leaves(subdivision, world.view_space.leaf_level);
   ViewSpace space = world.view_space;
-  for (space.finest_level = space.leaf_level; space.finest_level < world.view_space.finest_level; ++space.finest_level) {
-    Subdivision coarse;
+  for (space.finest_level = space.leaf_level; space.finest_level <= world.view_space.finest_level; ++space.finest_level) {
+    Subdivision found;
     const double taken = seconds_of([&] {
-      coarse = subdivide(world.scene, world.hierarchy.rank, space, world.visibility, model, world.camera, world.view_space_options, options,
-                         budget);
+      found = subdivide(world.scene, world.hierarchy.rank, space, world.visibility, model, world.camera, world.view_space_options, options,
+                        budget);
     });
-    add(taken, coarse);
+    curve.push_back(point(taken, static_cast<double>(found.cells.size()), found.worst_predicted_ms / worst_sampled_ms, kUnit));
   }
-  add(seconds, subdivision);
   return curve;
 }
 

@@ -20,9 +20,9 @@ namespace standin {
 [[nodiscard]] nlohmann::json estimator_curve(const Target& target);
 /// Certified missed share of rays, by the share asked for, mean over at most 16 regions. Work: rays per region.
 [[nodiscard]] nlohmann::json visibility_curve(const World& world, const JobSpec& spec, const WorkBudget& budget);
-/// Highest bound of a region over the worst sampled view, by halvings in position. Work: cells. `subdivision`: the job's own, which took
-/// `seconds`.
-[[nodiscard]] nlohmann::json view_space_curve(const World& world, const TimeModel& model, const Subdivision& subdivision, double seconds,
+/// Highest bound of a region over the worst sampled view, by halvings in position, of the 32 slowest leaf cubes of `subdivision`. Work:
+/// cells.
+[[nodiscard]] nlohmann::json view_space_curve(const World& world, const TimeModel& model, const Subdivision& subdivision,
                                               double predicted_budget_ms, double worst_sampled_ms, const WorkBudget& budget);
 /// Gap to the lower bound after each round of repair. Work: rounds.
 [[nodiscard]] nlohmann::json select_curve(const SelectedImpostors& selected, const StageClock& clock);

@@ -38,9 +38,12 @@ SizeModel fit_sizes(const Surveyed& job, const Subdivision& probe, Technique tec
 Subdivision probe_views(const Surveyed& job, const WorkBudget& budget) {
   constexpr std::size_t kProbedLeaves = 256;
   constexpr double kProbeShare = 0.6;
-  const std::size_t stride = (leaf_keys(job.world.view_space).size() + kProbedLeaves - 1) / kProbedLeaves;
-  const double worst_ms = problem_views(job, std::numeric_limits<double>::infinity(), budget, stride).worst_predicted_ms;
-  return problem_views(job, kProbeShare * worst_ms, budget, stride);
+  const std::vector<CellKey> all = leaf_keys(job.world.view_space);
+  const std::size_t stride = (all.size() + kProbedLeaves - 1) / kProbedLeaves;
+  std::vector<CellKey> leaves;
+  for (std::size_t i = 0; i < all.size(); i += stride) leaves.push_back(all[i]);
+  const double worst_ms = problem_views(job, std::numeric_limits<double>::infinity(), budget, leaves).worst_predicted_ms;
+  return problem_views(job, kProbeShare * worst_ms, budget, std::move(leaves));
 }
 
 SizeModels fit_sizes(const Surveyed& job, const JobSpec& spec, const WorkBudget& budget) {

@@ -48,12 +48,12 @@ void load_job(const JobFiles& files, const JobSpec& spec, StageClock& clock, con
   job.candidate_options = candidate_options_of(spec, job.world.threads);
 }
 
-Subdivision problem_views(const Surveyed& job, double predicted_budget_ms, const WorkBudget& budget, std::size_t leaf_stride) {
+Subdivision problem_views(const Surveyed& job, double predicted_budget_ms, const WorkBudget& budget, std::vector<CellKey> leaves) {
   const World& world = job.world;
   SubdivisionOptions options;
   options.threads = world.threads;
   options.predicted_budget_ms = predicted_budget_ms;
-  options.leaf_stride = leaf_stride;
+  options.leaves = std::move(leaves);
   return subdivide(world.scene, world.hierarchy.rank, world.view_space, world.visibility, job.target.model, world.camera,
                    world.view_space_options, options, budget, job.searches.get());
 }

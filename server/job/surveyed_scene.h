@@ -31,9 +31,9 @@ struct Surveyed {
 /// Stages load, view_space and visibility.
 void load_job(const JobFiles& files, const JobSpec& spec, StageClock& clock, const WorkBudget& budget, Surveyed& job);
 
-/// The regions whose predicted bound exceeds the budget. `leaf_stride`: of every so many-th leaf cube.
+/// The regions whose predicted bound exceeds the budget. `leaves`: of these leaf cubes, sorted; empty: of all.
 [[nodiscard]] Subdivision problem_views(const Surveyed& job, double predicted_budget_ms, const WorkBudget& budget,
-                                        std::size_t leaf_stride = 1);
+                                        std::vector<CellKey> leaves = {});
 
 /// Stages size_model and survey. `problem`: the problem views of a placement, if there is one: how low another budget might go is then left
 /// out, since the selection says of each region that it cannot solve what it could be brought to.
