@@ -4,7 +4,7 @@
 // something and ask which shafts enclose the cell. Each shaft is then tightened: axis, aperture and near plane shrink to the cells served
 // (2x less memory for nothing, simulation.md). Candidates with the same node and cells are duplicates; hopeless ones (too many layers, no
 // gain) are dropped in O(1) from the closed-form layer count. Every (node, cell) that can gain anything also gets the shaft tight around
-// that cell alone, so that the selection can reach what reachable_times() promises. A node whose visible objects all lie in one child gets
+// that cell alone, so that the selection can reach what reachable_times() promises (pyramids, a baseline, may fall short of it). A node whose visible objects all lie in one child gets
 // none of its own: the child's is the same impostor. Each is offered once per technique that has something of its own to offer (draft.h);
 // planar impostors are offered for further, smaller sets of cells (planar_parts.h).
 #pragma once
@@ -19,13 +19,18 @@
 
 namespace standin {
 
-enum class CellShape { kShaft, kBox };
+enum class CellShape {
+  kShaft,    // tight around the cells served
+  kPyramid,  // as the thesis has it: not tightened
+  kBox,      // nodes of the view space's grid (thesis test 13)
+  kCell,     // of these a leaf cube and what it was halved into alone (thesis test 14)
+};
 
 struct CandidateOptions {
   std::vector<double> apex_deg = {11.25, 22.5, 45.0, 90.0};
   double direction_step_deg = 11.25;
   bool every_direction = false;         // for tests: also asks of each cell the directions that cannot hold it
-  CellShape shape = CellShape::kShaft;  // kBox: nodes of the view space grid (thesis test 13)
+  CellShape shape = CellShape::kShaft;
   int threads = 1;
 };
 

@@ -67,27 +67,47 @@ std::vector<Held> held_groups(const Vec3& apex, std::span<const CellGroup> group
   return held;
 }
 
-void append_set(std::span<const Held> held, std::vector<GroupSet>& sets) {
-  if (held.size() < 2) return;
+GroupSet groups_of(std::span<const Held> held) {
   GroupSet set;
   for (const Held& h : held) set.push_back(h.group);
   std::sort(set.begin(), set.end());
-  sets.push_back(std::move(set));
+  return set;
 }
 
-/// All groups of one pyramid, then those beyond each doubling of the cluster's diagonal.
-void append_nested(std::span<const Held> held, double diagonal_m, std::vector<GroupSet>& sets) {
-  append_set(held, sets);
-  const double unit_m = std::max(diagonal_m, 1e-6);
-  while (held.size() >= 2) {
+/// Calls visit(held, octave) for all groups of one pyramid, then for those beyond each doubling of `unit_m`; all lie beyond
+/// unit_m * 2^octave.
+template <class Visit>
+void for_each_nested(std::span<const Held> held, double unit_m, Visit&& visit) {
+  while (!held.empty()) {
     const double octave = std::floor(std::log2(held.back().near_m / unit_m));
+    visit(held, octave);
     const double least_m = unit_m * std::exp2(octave + 1.0);
     auto beyond = held.size();
     while (beyond > 0 && held[beyond - 1].near_m < least_m) --beyond;
     if (beyond == held.size()) return;  // rounding left nothing to drop
     held = held.first(beyond);
-    append_set(held, sets);
   }
+}
+
+/// Calls visit(held) for the groups of each pyramid that holds any.
+template <class Visit>
+void for_each_pyramid(std::span<const Held> held, Visit&& visit) {
+  for (std::size_t begin = 0; begin < held.size();) {
+    std::size_t end = begin;
+    while (end < held.size() && held[end].pyramid == held[begin].pyramid) ++end;
+    visit(held.subspan(begin, end - begin));
+    begin = end;
+  }
+}
+
+std::vector<double> tangents_of_halves(std::span<const double> apex_deg) {
+  std::vector<double> tan_half;
+  for (const double apex : apex_deg) tan_half.push_back(std::tan(0.5 * apex * kRadPerDeg));
+  return tan_half;
+}
+
+double unit_of(const Box& cluster) {
+  return std::max(cluster.diagonal(), 1e-6);
 }
 
 }  // namespace
@@ -150,16 +170,39 @@ std::vector<GroupSet> shaft_group_sets(const Box& cluster, std::span<const CellG
                                        std::span<const double> apex_deg) {
   std::vector<GroupSet> sets;
   if (groups.size() < 2 || apex_deg.empty()) return sets;
-  std::vector<double> tan_half;
-  for (const double apex : apex_deg) tan_half.push_back(std::tan(0.5 * apex * kRadPerDeg));
-  const auto held = held_groups(cluster.centre(), groups, grid, tan_half);
-  for (std::size_t begin = 0; begin < held.size();) {
-    std::size_t end = begin;
-    while (end < held.size() && held[end].pyramid == held[begin].pyramid) ++end;
-    append_nested(std::span(held).subspan(begin, end - begin), cluster.diagonal(), sets);
-    begin = end;
-  }
+  const auto held = held_groups(cluster.centre(), groups, grid, tangents_of_halves(apex_deg));
+  for_each_pyramid(held, [&](std::span<const Held> of_pyramid) {
+    for_each_nested(of_pyramid, unit_of(cluster), [&](std::span<const Held> nested, double) {
+      if (nested.size() >= 2) sets.push_back(groups_of(nested));
+    });
+  });
   return sets;
+}
+
+std::vector<Pyramid> pyramids(const Box& cluster, std::span<const CellGroup> groups, const DirectionGrid& grid,
+                              std::span<const double> apex_deg) {
+  constexpr double kMostDoublings = 10.0;
+  std::vector<Pyramid> all;
+  if (groups.empty() || apex_deg.empty()) return all;
+  const auto tan_half = tangents_of_halves(apex_deg);
+  const auto held = held_groups(cluster.centre(), groups, grid, tan_half);
+  for_each_pyramid(held, [&](std::span<const Held> of_pyramid) {
+    Shaft shaft = grid.frame(of_pyramid.front().pyramid / static_cast<std::uint32_t>(tan_half.size()));
+    shaft.apex = cluster.centre();
+    shaft.tan_half = Vec2(tan_half[of_pyramid.front().pyramid % tan_half.size()]);
+    for_each_nested(of_pyramid, unit_of(cluster), [&](std::span<const Held> nested, double octave) {
+      if (octave < 0.0) return;
+      shaft.min_distance_m = unit_of(cluster) * std::exp2(std::min(octave, kMostDoublings));
+      all.push_back({shaft, groups_of(nested)});
+    });
+  });
+  std::stable_sort(all.begin(), all.end(), [](const Pyramid& a, const Pyramid& b) {
+    if (a.groups != b.groups) return a.groups < b.groups;
+    if (a.shaft.tan_half.x != b.shaft.tan_half.x) return a.shaft.tan_half.x < b.shaft.tan_half.x;
+    return a.shaft.min_distance_m > b.shaft.min_distance_m;
+  });
+  all.erase(std::unique(all.begin(), all.end(), [](const Pyramid& a, const Pyramid& b) { return a.groups == b.groups; }), all.end());
+  return all;
 }
 
 CellSet cells_of(const GroupSet& set, std::span<const CellGroup> groups) {

@@ -49,6 +49,15 @@ using GroupSet = std::vector<std::uint32_t>;  // ascending
 /// Every set of two or more groups that one pyramid holds; may repeat. `cluster`: bounds of the node.
 [[nodiscard]] std::vector<GroupSet> shaft_group_sets(const Box& cluster, std::span<const CellGroup> groups, const DirectionGrid& grid,
                                                      std::span<const double> apex_deg);
+/// A pyramid and all groups that it holds.
+struct Pyramid {
+  Shaft shaft;
+  GroupSet groups;
+};
+/// Untightened: minimum distances are 1, 2, 4 .. 1024 diagonals of the cluster. Of those that hold the same groups the narrowest that begins
+/// farthest, once.
+[[nodiscard]] std::vector<Pyramid> pyramids(const Box& cluster, std::span<const CellGroup> groups, const DirectionGrid& grid,
+                                            std::span<const double> apex_deg);
 [[nodiscard]] CellSet cells_of(const GroupSet& set, std::span<const CellGroup> groups);
 
 /// Every set of two or more of `cells` (ascending) below a node of the dyadic grid, from `coarsest_level` down; may repeat.

@@ -27,7 +27,7 @@ std::optional<ViewCell> view_cell_around(const DraftContext& context, const Box&
     all.extend(boxes.back());
     if (distance(boxes.back(), object_bounds) <= 0.0) return std::nullopt;
   }
-  if (context.shape == CellShape::kBox) return all;
+  if (context.shape == CellShape::kBox || context.shape == CellShape::kCell) return all;
   return tight_shaft(object_bounds.centre(), boxes);
 }
 
@@ -49,12 +49,14 @@ struct Cluster {
   ImpostorSketch sketch;
 };
 
-std::optional<Cluster> cluster_seen_from(const DraftContext& context, std::uint32_t node, const CellSet& cells) {
+/// `given`: the view cell; none: what fits the cells.
+std::optional<Cluster> cluster_seen_from(const DraftContext& context, std::uint32_t node, const CellSet& cells, const ViewCell* given) {
   Cluster cluster;
   cluster.objects = visible_objects(context, node, cells);
   for (const std::uint32_t object : cluster.objects) cluster.bounds.extend(context.scene.objects[object].bounds);
-  const auto view_cell = view_cell_around(context, cluster.bounds, cells);
+  auto view_cell = view_cell_around(context, cluster.bounds, cells);
   if (!view_cell) return std::nullopt;
+  if (given != nullptr) view_cell = *given;
   cluster.view_cell = *view_cell;
   cluster.points = context.outlines.of(cluster.objects);
   cluster.sketch = sketch_impostor(cluster.bounds, cluster.points, *view_cell, context.camera, context.quality);
@@ -120,11 +122,9 @@ bool beats(const Draft& known, const Draft& draft) {
   return known.candidate.bytes <= draft.candidate.bytes && known.cost.fixed_ms <= draft.cost.fixed_ms;
 }
 
-}  // namespace
-
-std::vector<Draft> draft_candidates(const DraftContext& context, std::uint32_t node, const CellSet& cells) {
+std::vector<Draft> drafts_of(const DraftContext& context, std::uint32_t node, const CellSet& cells,
+                             const std::optional<Cluster>& cluster) {
   std::vector<Draft> drafts;
-  const auto cluster = cluster_seen_from(context, node, cells);
   if (!cluster) return drafts;
   for (std::size_t i = 0; i < kTechniqueCount; ++i) {
     const auto technique = static_cast<Technique>(i);
@@ -136,8 +136,18 @@ std::vector<Draft> draft_candidates(const DraftContext& context, std::uint32_t n
   return drafts;
 }
 
+}  // namespace
+
+std::vector<Draft> draft_candidates(const DraftContext& context, std::uint32_t node, const CellSet& cells) {
+  return drafts_of(context, node, cells, cluster_seen_from(context, node, cells, nullptr));
+}
+
+std::vector<Draft> draft_candidates(const DraftContext& context, std::uint32_t node, const CellSet& cells, const ViewCell& view_cell) {
+  return drafts_of(context, node, cells, cluster_seen_from(context, node, cells, &view_cell));
+}
+
 std::optional<Draft> draft_planar(const DraftContext& context, std::uint32_t node, const CellSet& cells) {
-  const auto cluster = cluster_seen_from(context, node, cells);
+  const auto cluster = cluster_seen_from(context, node, cells, nullptr);
   if (!cluster || !one_layer_is_enough(context, *cluster)) return std::nullopt;
   return draft_of(context, node, cells, *cluster, Technique::kPlanar);
 }

@@ -47,6 +47,9 @@ struct Draft {
 /// By technique, in the order of the enumeration. `cells`: ascending, at least one, each sees some object of the node. Empty when no
 /// impostor is possible.
 [[nodiscard]] std::vector<Draft> draft_candidates(const DraftContext& context, std::uint32_t node, const CellSet& cells);
+/// The same with a view cell that encloses the cells, whatever its shape.
+[[nodiscard]] std::vector<Draft> draft_candidates(const DraftContext& context, std::uint32_t node, const CellSet& cells,
+                                                  const ViewCell& view_cell);
 
 /// A planar one, beside whatever else is offered. Nothing where one layer is not enough.
 [[nodiscard]] std::optional<Draft> draft_planar(const DraftContext& context, std::uint32_t node, const CellSet& cells);

@@ -22,12 +22,15 @@ class NodeCandidates {
 
   CandidateSet generate(const DirectionGrid& grid, int leaf_level, const CandidateOptions& options) {
     serve_single_cells();
-    const bool boxes = options.shape == CellShape::kBox;
     for (const CellSet& cells : cells_to_serve()) {
-      serve_cubes(cells, boxes ? 0 : leaf_level);
-      if (!boxes) serve_pyramids(cells, grid, leaf_level, options.apex_deg);
+      if (options.shape == CellShape::kPyramid) {
+        serve_pyramids(cells, grid, leaf_level, options.apex_deg);
+        continue;
+      }
+      serve_cubes(cells, options.shape == CellShape::kBox ? 0 : leaf_level);
+      if (options.shape == CellShape::kShaft) serve_shafts(cells, grid, leaf_level, options.apex_deg);
     }
-    if (context_.sizes.offers(Technique::kPlanar)) serve_planar_parts();
+    if (context_.sizes.offers(Technique::kPlanar) && options.shape != CellShape::kPyramid) serve_planar_parts();
     return std::move(set_);
   }
 
@@ -36,20 +39,22 @@ class NodeCandidates {
   void serve_single_cells() {
     for (const std::uint32_t cell : context_.index.cells_seeing(node_)) {
       auto drafts = draft_candidates(context_, node_, {cell});
-      set_.generated += std::max<std::size_t>(drafts.size(), 1);
+      CandidateSet uncounted;
+      CandidateSet& set = offers_single_cells() ? set_ : uncounted;
+      set.generated += std::max<std::size_t>(drafts.size(), 1);
       if (drafts.empty()) {
-        ++set_.impossible;
+        ++set.impossible;
         continue;
       }
       UsefulCell useful{cell, {}, false};
       const IdRange cpvs = context_.index.cpvs(cell);
       for (std::uint32_t p = cpvs.begin; p < cpvs.end; ++p)
         useful.terms_ms.push_back(context_.index.terms_ms(context_.subdivision.cpvs[p], node_));
-      set_.hopeless += std::erase_if(drafts, [&](const Draft& draft) { return !gains(useful, draft.cost); });
+      set.hopeless += std::erase_if(drafts, [&](const Draft& draft) { return !gains(useful, draft.cost); });
       if (drafts.empty()) continue;
       useful.for_layers = drafts.front().candidate.technique == Technique::kLayered;
       useful_.push_back(std::move(useful));
-      keep(std::move(drafts));
+      if (offers_single_cells()) keep(std::move(drafts));
     }
   }
 
@@ -57,10 +62,20 @@ class NodeCandidates {
     for (const CellSet& cells : distinct(box_cell_sets(useful, context_.subdivision, coarsest_level))) serve(cells);
   }
 
-  void serve_pyramids(const CellSet& useful, const DirectionGrid& grid, int leaf_level, std::span<const double> apex_deg) {
+  void serve_shafts(const CellSet& useful, const DirectionGrid& grid, int leaf_level, std::span<const double> apex_deg) {
     const auto groups = group_cells(useful, context_.subdivision, leaf_level);
     for (const GroupSet& set : distinct(shaft_group_sets(context_.hierarchy.nodes[node_].bounds, groups, grid, apex_deg)))
       serve(cells_of(set, groups));
+  }
+
+  // Those with the same groups are told apart by their view cells alone: pyramids() keeps one of them.
+  void serve_pyramids(const CellSet& useful, const DirectionGrid& grid, int leaf_level, std::span<const double> apex_deg) {
+    const auto groups = group_cells(useful, context_.subdivision, leaf_level);
+    for (const Pyramid& pyramid : pyramids(context_.hierarchy.nodes[node_].bounds, groups, grid, apex_deg)) {
+      const CellSet cells = cells_of(pyramid.groups, groups);
+      ++set_.generated;
+      if (is_new(cells)) serve(cells, draft_candidates(context_, node_, cells, pyramid.shaft));
+    }
   }
 
   /// Those that a layered impostor is useful for, and all: further techniques add sets and take none away.
@@ -85,11 +100,16 @@ class NodeCandidates {
   }
 
   void serve(const CellSet& cells) {
-    if (offers_more_than_layers() && !served_.insert(cells).second) {
-      ++set_.duplicates;
-      return;
-    }
-    auto drafts = draft_candidates(context_, node_, cells);
+    if (is_new(cells)) serve(cells, draft_candidates(context_, node_, cells));
+  }
+
+  bool is_new(const CellSet& cells) {
+    const bool fresh = !offers_more_than_layers() || served_.insert(cells).second;
+    if (!fresh) ++set_.duplicates;
+    return fresh;
+  }
+
+  void serve(const CellSet& cells, std::vector<Draft> drafts) {
     if (drafts.empty())
       ++set_.impossible;
     else
@@ -138,6 +158,9 @@ class NodeCandidates {
     }
     for (Draft& draft : drafts) set_.candidates.push_back(std::move(draft.candidate));
   }
+
+  /// Pyramids are a baseline without the tight shafts around single cells; these still tell which cells are useful.
+  [[nodiscard]] bool offers_single_cells() const { return context_.shape != CellShape::kPyramid; }
 
   [[nodiscard]] bool offers_more_than_layers() const {
     const auto offered = [&](Technique technique) { return context_.sizes.offers(technique); };

@@ -33,7 +33,7 @@ class Checker {
       : input_(input),
         placement_(placement),
         cell_boxes_(input.view_space),
-        estimator_(input.scene, input.hierarchy_rank, input.model, input.camera, input.interval_deg),
+        estimator_(input.scene, input.hierarchy_rank, input.model, input.camera, input.interval_deg, input.bounds),
         page_switches_ms_(input.atlas_pages * input.model.milliseconds_per_unit[static_cast<std::size_t>(Term::kTextureSwitches)]) {
     everything_.resize(input.scene.objects.size());
     std::iota(everything_.begin(), everything_.end(), 0U);

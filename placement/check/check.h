@@ -43,6 +43,7 @@ struct CheckInput {
   double interval_deg;
   double budget_ms;
   std::uint32_t atlas_pages;  // a texture switch each, charged to every region that draws an impostor
+  RegionBounds bounds = RegionBounds::kBySample;
 };
 
 struct CheckReport {

@@ -28,7 +28,7 @@ class Selector {
     pick();
     repair();
     result_.summary.bytes_greedy = bytes();
-    reverse_delete(problem_, cover_, budget_);
+    if (config_.reverse_delete) reverse_delete(problem_, cover_, budget_);
     exchange(problem_, cover_, config_.exchange_rounds, budget_);
     assign();
     summarise();

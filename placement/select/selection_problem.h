@@ -109,7 +109,8 @@ struct Selection {
 
 struct SelectionConfig {
   bool lazy = true;            // false: plain greedy, the oracle
-  int exchange_rounds = 0;     // 0: reverse-delete only; each round tries to add one and delete others
+  bool reverse_delete = true;  // false: what the greedy picks is kept
+  int exchange_rounds = 0;     // each round tries to add one and delete others
   int bound_iterations = 100;  // subgradient steps; 0: no lower bound
   int threads = 1;             // the same result for any number
 };

@@ -45,12 +45,13 @@ const DirectionCone& DirectionTree::cone(const DirectionInterval& interval) cons
 }
 
 RegionEstimator::RegionEstimator(const Scene& scene, const std::vector<std::uint32_t>& hierarchy_rank, const TimeModel& model,
-                                 const Camera& camera, double interval_deg)
+                                 const Camera& camera, double interval_deg, RegionBounds bounds)
     : scene_(&scene),
       rank_(&hierarchy_rank),
       model_(&model),
       features_(scene, camera),
-      directions_(camera, level_for_width(interval_deg)) {}
+      directions_(camera, level_for_width(interval_deg)),
+      bounds_(bounds) {}
 
 CellCosts RegionEstimator::cell_costs(std::vector<Box> chain, std::span<const std::uint32_t> visible) const {
   CellCosts cell;
@@ -134,6 +135,7 @@ bool RegionEstimator::sharpen(CellCosts& cell, const DirectionInterval& interval
                               std::span<Cost> costs, double predicted_ms) const {
   RegionSums sums = empty_frame();
   for (const Cost& cost : costs) sums.add(cost);
+  if (bounds_ == RegionBounds::kByObject) return sums.predicted_ms() > predicted_ms;
   std::vector<std::uint32_t> dearest(seen.size());
   std::iota(dearest.begin(), dearest.end(), 0U);
   std::ranges::stable_sort(dearest, std::ranges::greater(), [&](std::uint32_t k) { return costs[k].fixed_ms + costs[k].pixel_ms; });

@@ -7,6 +7,7 @@
 //
 // That cost holds for any direction, cheaply, and is what the search prunes by at first. Of a region of the finest levels that it leaves,
 // every object is looked at again, sample by sample (estimation/gaze.h): what of it no view of the region sees costs nothing.
+// RegionBounds::kByObject leaves that out.
 //
 // Pixel work saturates (screen_coverage.h), so a region has two linear bounds: all terms with their pixels, or terms without and as many of
 // the costliest pixels as can pass. The smaller is chosen.
@@ -20,6 +21,7 @@
 
 #include "estimation/feature_table.h"
 #include "estimation/time_model.h"
+#include "placement/view_space/view_space.h"
 #include "render/view/enclosing_region.h"
 
 namespace standin {
@@ -79,7 +81,7 @@ struct RegionBound {
 class RegionEstimator {
  public:
   RegionEstimator(const Scene& scene, const std::vector<std::uint32_t>& hierarchy_rank, const TimeModel& model, const Camera& camera,
-                  double interval_deg);
+                  double interval_deg, RegionBounds bounds = RegionBounds::kBySample);
 
   /// `visible`: ids of the objects that may be seen from the cell.
   [[nodiscard]] CellCosts cell_costs(std::vector<Box> chain, std::span<const std::uint32_t> visible) const;
@@ -114,6 +116,7 @@ class RegionEstimator {
   const TimeModel* model_;
   FeatureTable features_;
   DirectionTree directions_;
+  RegionBounds bounds_;
 };
 
 }  // namespace standin

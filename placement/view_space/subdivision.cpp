@@ -35,15 +35,15 @@ std::vector<DirectionInterval> used_intervals(const std::vector<SearchedCell>& s
 class Subdivider {
  public:
   Subdivider(const Scene& scene, const std::vector<std::uint32_t>& rank, const ViewSpace& space, const Visibility& visibility,
-             const TimeModel& model, const Camera& camera, double interval_deg, const SubdivisionOptions& options, const WorkBudget& budget,
-             SearchMemory* memory)
+             const TimeModel& model, const Camera& camera, const ViewSpaceOptions& view_space_options, const SubdivisionOptions& options,
+             const WorkBudget& budget, SearchMemory* memory)
       : space_(space),
         visibility_(visibility),
         options_(options),
         budget_(budget),
         memory_(memory),
         cell_boxes_(space),
-        estimator_(scene, rank, model, camera, interval_deg),
+        estimator_(scene, rank, model, camera, view_space_options.interval_deg, view_space_options.bounds),
         all_objects_(scene.objects.size()) {
     std::iota(all_objects_.begin(), all_objects_.end(), 0U);
   }
@@ -213,8 +213,7 @@ class Subdivider {
 Subdivision subdivide(const Scene& scene, const std::vector<std::uint32_t>& hierarchy_rank, const ViewSpace& view_space,
                       const Visibility& visibility, const TimeModel& model, const Camera& camera, const ViewSpaceOptions& options,
                       const SubdivisionOptions& subdivision_options, const WorkBudget& budget, SearchMemory* memory) {
-  Subdivider subdivider(scene, hierarchy_rank, view_space, visibility, model, camera, options.interval_deg, subdivision_options, budget,
-                        memory);
+  Subdivider subdivider(scene, hierarchy_rank, view_space, visibility, model, camera, options, subdivision_options, budget, memory);
   Subdivision result = subdivider.assemble(subdivider.run());
   if (subdivider.cells_not_halved() > 0)
     result.left_out.push_back("halving " + std::to_string(subdivider.cells_not_halved()) + " more hot cells in position: more than " +

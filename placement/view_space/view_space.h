@@ -19,6 +19,12 @@ namespace standin {
 
 enum class ViewSpaceKind { kWalk, kOrbit, kPath, kBoxes };
 
+/// What a region's bound looks at of each object that its views may see (region_bound.h).
+enum class RegionBounds {
+  kBySample,  // those of its surface samples that some view may see
+  kByObject,  // all of it, as in the thesis
+};
+
 struct ViewSpaceOptions {
   double leaf_m = 23.0;         // side of a 3D leaf (thesis 5.8.1)
   int refine_levels = 2;        // hot leaves are halved so often in position (23 -> 5.75 m)
@@ -27,6 +33,7 @@ struct ViewSpaceOptions {
   double orbit_near = 2.5;      // orbit shell, in bounding radii
   double orbit_far = 10.0;
   std::uint64_t max_leaves = 20'000;  // 3D leaves grow (doubled) until fewer; reported
+  RegionBounds bounds = RegionBounds::kBySample;
 };
 
 /// Node of the dyadic grid; cube (i, j, k) of 2^level a side.

@@ -39,6 +39,7 @@ struct JobSpec {
   double interval_deg = 11.25;
   double eye_height_m = 1.7;
   std::uint64_t max_leaves = 20'000;
+  std::string region_bounds = "sample";
 
   std::string visibility = "auto";  // auto: where a probe finds occlusion; on; off
   double visibility_missed_share = 1e-4;
@@ -52,6 +53,7 @@ struct JobSpec {
   double texel_scale = 1.0;
   std::uint32_t max_layers = 0;  // 0: 200 for walk, 400 for orbit
   bool fuzzy = false;            // masked surfaces without outlines: no image promise where they are
+  bool keep_picks = false;
   int exchange_rounds = 0;
   int bound_iterations = 100;
   int bake_rounds = 10;

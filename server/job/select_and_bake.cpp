@@ -160,6 +160,7 @@ class Rounds {
 
   void select(const JobSpec& spec) {
     SelectionConfig config;
+    config.reverse_delete = !spec.keep_picks;
     config.exchange_rounds = spec.exchange_rounds;
     config.bound_iterations = 0;
     config.threads = world_.threads;

@@ -7,11 +7,17 @@
 namespace standin {
 namespace {
 
+CellShape cell_shape_of(const JobSpec& spec) {
+  if (spec.cell_shape == "pyramid") return CellShape::kPyramid;
+  if (spec.cell_shape == "box") return CellShape::kBox;
+  return spec.cell_shape == "cell" ? CellShape::kCell : CellShape::kShaft;
+}
+
 CandidateOptions candidate_options_of(const JobSpec& spec, int threads) {
   CandidateOptions options;
   options.apex_deg = spec.apex_deg;
   options.direction_step_deg = spec.direction_step_deg;
-  options.shape = spec.cell_shape == "box" ? CellShape::kBox : CellShape::kShaft;
+  options.shape = cell_shape_of(spec);
   options.threads = threads;
   options.every_direction = forced(spec, "candidates");
   return options;

@@ -154,6 +154,10 @@ Camera camera_of(const JobSpec& spec) {
   return camera;
 }
 
+RegionBounds region_bounds(const JobSpec& spec) {
+  return spec.region_bounds == "object" ? RegionBounds::kByObject : RegionBounds::kBySample;
+}
+
 ViewSpaceOptions view_space_options(const JobSpec& spec) {
   ViewSpaceOptions options;
   options.leaf_m = spec.leaf_m;
@@ -161,6 +165,7 @@ ViewSpaceOptions view_space_options(const JobSpec& spec) {
   options.interval_deg = spec.interval_deg;
   options.eye_height_m = spec.eye_height_m;
   options.max_leaves = spec.max_leaves;
+  options.bounds = region_bounds(spec);
   return options;
 }
 

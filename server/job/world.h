@@ -17,6 +17,7 @@ namespace standin {
 
 [[nodiscard]] LoadOptions load_options(const JobSpec& spec);
 [[nodiscard]] Camera camera_of(const JobSpec& spec);
+[[nodiscard]] RegionBounds region_bounds(const JobSpec& spec);
 [[nodiscard]] ViewSpaceOptions view_space_options(const JobSpec& spec);
 /// `view_space` decides the default cap on layers.
 [[nodiscard]] BakeQuality quality_of(const JobSpec& spec, ViewSpaceKind view_space);

@@ -87,6 +87,61 @@ TEST(Candidates, BoxesHoldWhatTheyPromise) {
   EXPECT_GT(shared, 0U);
 }
 
+TEST(Candidates, PyramidsAreThoseOfTheGridAndNotTightened) {
+  std::size_t loose = 0;
+  for (std::uint64_t seed = 1; seed <= 15; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    auto world = random_world(seed, 8, 30);
+    world.options.shape = CellShape::kPyramid;
+    const auto set = world.generate();
+    EXPECT_GT(set.candidates.size(), 10U);
+    EXPECT_EQ(set.generated, set.candidates.size() + set.duplicates + set.impossible + set.hopeless);
+    for (const auto& candidate : set.candidates) {
+      check_candidate(world, candidate);
+      const Box& bounds = world.hierarchy.nodes[candidate.node].bounds;
+      const auto& shaft = std::get<Shaft>(candidate.view_cell);
+      const double apex_deg = glm::degrees(2.0 * std::atan(shaft.tan_half.x));
+      EXPECT_TRUE(std::ranges::any_of(world.options.apex_deg, [&](double known) { return std::abs(known - apex_deg) < 1e-9; }));
+      EXPECT_EQ(shaft.tan_half.x, shaft.tan_half.y);
+      EXPECT_EQ(shaft.apex, bounds.centre());
+      const double doublings = std::log2(shaft.min_distance_m / bounds.diagonal());
+      EXPECT_NEAR(doublings, std::round(doublings), 1e-9);
+      EXPECT_GE(doublings, -1e-9);
+      EXPECT_LE(doublings, 10.0 + 1e-9);
+      Shaft farther = shaft;
+      farther.min_distance_m *= 1.01;
+      loose += std::ranges::all_of(candidate.cells, [&](auto cell) { return encloses(farther, world.subdivision.cells[cell].box); });
+    }
+  }
+  EXPECT_GT(loose, 0U);
+}
+
+TEST(Candidates, OfOneCellServeNoOtherLeaf) {
+  ToyWorld world = empty_toy_world();
+  world.add_object({Vec3(0.0), Vec3(4.0)});
+  world.finish_objects();
+  for (int i = 0; i < 4; ++i) {  // a leaf halved once, another one beside it
+    const CellKey key = i < 3 ? CellKey{4, {i / 2, 0, i % 2}} : CellKey{3, {1, 0, 0}};
+    const Vec3 low(5.0 * key.index[0] * (i < 3 ? 1.0 : 2.0), 0.0, 100.0 + 5.0 * key.index[2]);
+    const auto cell = world.add_cell(key, {low, low + Vec3(i < 3 ? 5.0 : 10.0, 1.0, 5.0)});
+    world.add_cpv(cell, {{0, 10.0}});
+  }
+  const auto sets_of = [&](CellShape shape) {
+    world.options.shape = shape;
+    std::set<std::vector<std::uint32_t>> sets;
+    for (const auto& candidate : world.generate().candidates) {
+      EXPECT_TRUE(std::holds_alternative<Box>(candidate.view_cell));
+      sets.insert(candidate.cells);
+    }
+    return sets;
+  };
+  const std::set<std::vector<std::uint32_t>> alone = {{0}, {1}, {2}, {3}, {0, 1, 2}};
+  EXPECT_EQ(sets_of(CellShape::kCell), alone);
+  auto together = alone;
+  together.insert({0, 1, 2, 3});
+  EXPECT_EQ(sets_of(CellShape::kBox), together);
+}
+
 /// Every technique, or those named.
 SizeModels offering(std::initializer_list<Technique> techniques) {
   SizeModels sizes;

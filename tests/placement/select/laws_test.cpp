@@ -91,6 +91,21 @@ std::uint64_t kept_by(std::uint64_t seeds, const std::function<SelectionProblem(
   return seeds;
 }
 
+TEST(ReverseDelete, LeftOutKeepsWhatTheGreedyPicked) {
+  int dearer = 0;
+  for (std::uint64_t seed = 1; seed <= 200; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    const SelectionProblem problem = random_problem(seed, {});
+    const BruteForce oracle(problem);
+    const Selection kept = select_impostors(problem, {.reverse_delete = false}, {}, {});
+    check_unmet(problem, oracle, kept);
+    check_assignments(problem, oracle, kept);
+    EXPECT_EQ(kept.summary.bytes, kept.summary.bytes_greedy);
+    dearer += select_impostors(problem, {}, {}, {}).summary.bytes < kept.summary.bytes ? 1 : 0;
+  }
+  EXPECT_GT(dearer, 0);
+}
+
 std::function<SelectionProblem(std::uint64_t)> random_problems(const RandomShape& shape) {
   return [=](std::uint64_t seed) { return random_problem(seed, shape); };
 }

@@ -276,6 +276,28 @@ TEST(Subdivision, NoChildIsBoundedAboveItsParent) {
   EXPECT_GT(compared, 50);
 }
 
+TEST(Subdivision, BoundsByObjectCountAllOfAnObjectThatMayBeSeen) {
+  World world = small_town(0);
+  const TimeModel model = test::full_time_model();
+  const Subdivision by_sample = world.subdivide_for(0.0, model);
+  world.options.bounds = RegionBounds::kByObject;
+  const Subdivision by_object = world.subdivide_for(0.0, model);
+  const RegionEstimator estimator(world.scene, world.rank, model, world.camera, world.options.interval_deg, RegionBounds::kByObject);
+  const CellBoxes cells(world.space);
+  const auto sharper = regions_of(by_sample);
+  int looser = 0;
+  for (const auto& [region, cpv] : regions_of(by_object)) {
+    CellCosts costs = estimator.cell_costs(cells.chain(region.first), world.all());
+    EXPECT_EQ(cpv.predicted_ms, estimator.coarse_bound_ms(costs, region.second));
+    EXPECT_EQ(cpv.predicted_ms, estimator.region_bound(costs, region.second).predicted_ms);
+    const auto found = sharper.find(region);
+    if (found == sharper.end()) continue;
+    EXPECT_LE(found->second.predicted_ms, cpv.predicted_ms);
+    looser += found->second.predicted_ms < cpv.predicted_ms ? 1 : 0;
+  }
+  EXPECT_GT(looser, 0);
+}
+
 TEST(Subdivision, HotCellsAreHalvedAndColdOnesKept) {
   const World world = small_town(2);
   const TimeModel model = test::triangle_time_model();

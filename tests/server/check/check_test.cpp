@@ -48,6 +48,7 @@ struct Checked {
   ViewSpaceOptions options{.leaf_m = 4.0, .refine_levels = 0, .interval_deg = 22.5};
   ViewSpace space = make_box_view_space({{{1, 1.6, 3}, {9, 1.8, 7}}}, options);
   double budget_ms = 1.0;
+  RegionBounds bounds = RegionBounds::kBySample;
   Placement placement;
 
   Checked() {
@@ -64,7 +65,7 @@ struct Checked {
   }
 
   [[nodiscard]] CheckReport check(int threads = 1) const {
-    const CheckInput input{scene, rank, model, camera, space, options.interval_deg, budget_ms, 1};
+    const CheckInput input{scene, rank, model, camera, space, options.interval_deg, budget_ms, 1, bounds};
     return check_placement(input, placement, threads, {});
   }
 };
@@ -185,6 +186,16 @@ TEST(Check, AViewCellThatReachesItsLayersIsNamed) {
   ASSERT_EQ(report.findings.size(), 1U) << testing::PrintToString(sentences(report));
   EXPECT_EQ(report.findings[0].violation, Violation::kLayerInViewCell);
   EXPECT_THAT(report.findings[0].sentence, testing::StartsWith("impostor 0: "));
+}
+
+// With triangles off screen cheaper than those on it, what lies behind a view tells the two apart.
+TEST(Check, BoundsAreThoseThatThePlacementWasMadeWith) {
+  Checked world;
+  world.model = test::full_time_model();
+  const CheckReport by_sample = world.check();
+  world.bounds = RegionBounds::kByObject;
+  const CheckReport by_object = world.check();
+  EXPECT_NE(sentences(by_sample), sentences(by_object));
 }
 
 TEST(Check, FindingsDoNotDependOnThreads) {
