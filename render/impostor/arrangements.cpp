@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 #include <string>
 
 #include "render/base/error.h"
@@ -60,18 +61,25 @@ Shaft shaft_over_patch(const Vec3& centre, int face, double a0, double a1, doubl
 }  // namespace
 
 std::vector<BakeRequest> environment_map_requests(const Scene& scene, const Box& cell, double far_field_m) {
+  std::vector<std::uint32_t> all(scene.objects.size());
+  std::iota(all.begin(), all.end(), 0U);
+  return environment_map_requests(scene, all, cell, far_field_m);
+}
+
+std::vector<BakeRequest> environment_map_requests(const Scene& scene, std::span<const std::uint32_t> objects, const Box& cell,
+                                                  double far_field_m) {
   if (!(far_field_m > 0.0))
     throw Failure(ErrorWord::kBadUsage, "environment map: far field " + std::to_string(far_field_m) + " m violates: > 0");
   std::array<std::vector<std::uint32_t>, 6> faces;
-  for (std::uint32_t id = 0; id < scene.objects.size(); ++id) {
+  for (const std::uint32_t id : objects) {
     const auto gaps = gaps_between(scene.objects[id].bounds, cell);
     if (!(distance_between(gaps) >= far_field_m)) continue;
     const auto farthest = std::max_element(gaps.begin(), gaps.end());
     faces[static_cast<std::size_t>(farthest - gaps.begin())].push_back(id);
   }
   std::vector<BakeRequest> requests;
-  for (auto& objects : faces)
-    if (!objects.empty()) requests.push_back({std::move(objects), cell});
+  for (auto& of_face : faces)
+    if (!of_face.empty()) requests.push_back({std::move(of_face), cell});
   return requests;
 }
 

@@ -10,6 +10,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "render/impostor/bake.h"
@@ -19,6 +20,9 @@ namespace standin {
 /// Requests for everything at least `far_field_m` away from the cell, at most six: along -x +x -y +y -z +z, those without objects left out.
 /// far_field_m > 0. Objects nearer than that are in none.
 [[nodiscard]] std::vector<BakeRequest> environment_map_requests(const Scene& scene, const Box& cell, double far_field_m);
+/// The same for some of the objects (ascending), those that are visible from the cell.
+[[nodiscard]] std::vector<BakeRequest> environment_map_requests(const Scene& scene, std::span<const std::uint32_t> objects, const Box& cell,
+                                                                double far_field_m);
 
 /// 6 * per_face_side^2 shafts about the centre of the objects' bounds, one for each patch of a cube's faces in equal angles. Every
 /// viewpoint at least `distance_m` from that centre lies in one of them. per_face_side >= 1, objects ascending and at least one.

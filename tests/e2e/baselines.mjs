@@ -7,8 +7,9 @@ import { city, placed, readJson, resultOf, scratch, source, standin, target } fr
 
 const folder = scratch();
 const ours = resultOf(placed);
-// The fixture's settings as flags, since a baseline's file takes the place of its own.
-const small = ["--target", target, "--survey-views", "500", "--verify-views", "0", "--size-bakes", "8", "--quiet"];
+// A baseline's file takes the place of the fixture's, so its settings are flags here; cells are not halved, to save seconds.
+const small = ["--target", target, "--refine-levels", "0", "--interval-deg", "22.5", "--visibility-rays", "20000", "--survey-views", "500",
+               "--verify-views", "0", "--size-bakes", "8", "--quiet"];
 const baselines = readdirSync(join(source, "configs/baselines")).sort();
 
 /** Places under the baseline; what is not met is written all the same. */
@@ -52,6 +53,6 @@ test("the thesis' shafts have its apex angles and begin at powers of two", () =>
   }
 });
 
-test("the thesis' bounds are the looser ones: more problem views at the same budget", () => {
+test("the thesis' bounds are the looser ones", () => {
   assert.ok(results["thesis.toml"].metrics.survey.worst_bound_ms > ours.metrics.survey.worst_bound_ms);
 });

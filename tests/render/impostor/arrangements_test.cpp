@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <iterator>
 #include <map>
 
 #include "render/base/error.h"
@@ -61,6 +63,19 @@ TEST(EnvironmentMap, HoldsEveryFarObjectOnceAndNoNearOne) {
   }
   EXPECT_GT(far_objects, 30);
   EXPECT_LT(far_objects, 80);
+}
+
+TEST(EnvironmentMap, OfVisibleObjectsHoldsNoOthers) {
+  const Surroundings around;
+  std::vector<std::uint32_t> visible;
+  for (std::uint32_t id = 0; id < around.scene.objects.size(); id += 3) visible.push_back(id);
+  std::vector<std::uint32_t> of_all, of_visible;
+  for (const BakeRequest& request : environment_map_requests(around.scene, kCell, 40.0))
+    std::ranges::copy_if(request.objects, std::back_inserter(of_all), [](std::uint32_t id) { return id % 3 == 0; });
+  for (const BakeRequest& request : environment_map_requests(around.scene, visible, kCell, 40.0))
+    of_visible.insert(of_visible.end(), request.objects.begin(), request.objects.end());
+  EXPECT_GT(of_visible.size(), 5U);
+  EXPECT_EQ(of_visible, of_all);
 }
 
 TEST(EnvironmentMap, EveryFaceKeepsThePromise) {
