@@ -1,9 +1,9 @@
 // The budget that a fixed subdivision of a scene has so many problem views at: the thesis' Table 5.1 begins with 9,078 at 16 ms, and only at
 // as many are its figures comparable with ours (table_5_1.md).
 //
-//     reference_budget SCENE TARGET.json CPVS [CONFIG.toml [MISSED_SHARE]]
+//     reference_budget SCENE TARGET.json CPVS [MISSED_SHARE [CONFIG.toml]]
 //
-// Prints one object of JSON. The configuration's view_space.refine_levels must be 0: halved cells change with the budget.
+// Prints one object of JSON. The configuration (none: the defaults, not refined) must have view_space.refine_levels = 0: halved cells change with the budget.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -43,12 +43,12 @@ nlohmann::json reference_budget(const Surveyed& job, std::size_t cpvs) {
 
 int main(int argc, char** argv) {
   using namespace standin;
-  if (argc < 4) return std::fprintf(stderr, "usage: reference_budget SCENE TARGET CPVS [CONFIG [MISSED_SHARE]]\n"), 2;
+  if (argc < 4) return std::fprintf(stderr, "usage: reference_budget SCENE TARGET CPVS [MISSED_SHARE [CONFIG]]\n"), 2;
   try {
     JobSpec spec;
     spec.refine_levels = 0;
-    if (argc > 4) read_config(spec, argv[4]);
-    if (argc > 5) spec.visibility_missed_share = std::strtod(argv[5], nullptr);
+    if (argc > 5) read_config(spec, argv[5]);
+    if (argc > 4) spec.visibility_missed_share = std::strtod(argv[4], nullptr);
     if (spec.refine_levels != 0) throw Failure(ErrorWord::kBadUsage, "view_space.refine_levels violates: 0");
     const WorkBudget budget;
     StageClock clock(budget);
