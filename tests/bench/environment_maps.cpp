@@ -5,7 +5,7 @@
 //
 // The walkable view space is cut into cells of SIDE_M. From each, the visible objects that lie at least FAR_FIELD_M away are baked into at most
 // six layered impostors around the cell, all others stay as they are. So many CELLS, evenly spread, are baked; the bytes of all are
-// extrapolated, with the standard error of the sum. Prints one object of JSON per far field.
+// extrapolated, with the standard error of the sum. A far field of `inf` leaves all as it is. Prints one object of JSON per far field.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
