@@ -163,19 +163,23 @@ function printRatios(work, which) {
   }
 }
 
-function asMaps(maps, one) {
-  if (!one) return ["", ""];
-  const ratio = one.texture_bytes > 0 ? (maps.bytes / one.texture_bytes).toFixed(1) : "no impostor needed";
-  return [`${mb(one.texture_bytes)} (${one.cpv.unsolved} of ${one.cpv.count})`, ratio];
+/** Ours that promises no more than the maps' time, the loosest there is: at a tighter budget it takes more bytes, so the ratio is a least one. */
+function asMaps(maps, points) {
+  const promised = points.filter((one) => one.budget_ms <= maps.region_bound_ms + 1e-3).sort((a, b) => b.budget_ms - a.budget_ms)[0];
+  if (!promised || !(maps.bytes > 0)) return ["", ""];
+  const { budget_ms, texture_bytes, cpv } = promised;
+  const exact = Math.abs(budget_ms - maps.region_bound_ms) < 1e-3;
+  const ratio = texture_bytes > 0 ? `${exact ? "" : "at least "}${(maps.bytes / texture_bytes).toFixed(1)}` : "no impostor needed";
+  return [`${mb(texture_bytes)} at ${budget_ms.toFixed(1)} ms (${cpv.unsolved} of ${cpv.count})`, ratio];
 }
 
 function printAllMaps(work) {
   const all = allMaps(work);
   if (all.length === 0) return;
-  console.log("\n| cells, m | far field, m | cells (baked) | MB | standard error | walk: mean, worst, bound of the worst, ms | greatest bound of a region, ms | ours promised there: MB (unsolved CPVs) | maps over ours |\n|---|---|---|---|---|---|---|---|---|");
-  const ours = kept(work, "ours_as_maps");
+  console.log("\n| cells, m | far field, m | cells (baked) | MB | standard error | walk: mean, worst, bound of the worst, ms | greatest bound of a region, ms | ours with that promise: MB, budget (CPVs unsolved) | maps over ours |\n|---|---|---|---|---|---|---|---|---|");
+  const points = ["ours_as_maps", "ours"].flatMap((name) => kept(work, name)?.points ?? []);
   for (const maps of all)
-    line(maps.side_m, maps.far_field_m ?? "no maps", `${maps.cells} (${maps.sampled})`, mb(maps.bytes), mb(maps.bytes_standard_error), [maps.walk_mean_ms, maps.walk_worst_ms, maps.walk_worst_bound_ms].map((ms) => ms.toFixed(1)).join(", "), maps.region_bound_ms.toFixed(1), ...asMaps(maps, at(ours, maps.region_bound_ms)));
+    line(maps.side_m, maps.far_field_m ?? "no maps", `${maps.cells} (${maps.sampled})`, mb(maps.bytes), mb(maps.bytes_standard_error), [maps.walk_mean_ms, maps.walk_worst_ms, maps.walk_worst_bound_ms].map((ms) => ms.toFixed(1)).join(", "), maps.region_bound_ms.toFixed(1), ...asMaps(maps, points));
 }
 
 function print(work) {
