@@ -6,8 +6,8 @@
 // BUILD is a build folder (build/release), WORK keeps what was run: a row that is there is not run again. Rows: `budgets` (1 to 5), 6 .. 16,
 // `ours`, `rectangular`, `per_cell` and `thesis_sharp` (for the ratios), `ours_as_maps` (ours at the times that environment maps reach, after
 // 15); none: all. The reference budget is the one at which the thesis' fixed subdivision has 9,078 problem views; rows 2 to 6 scale it as the
-// thesis scales its 16 ms. The sharp one is that of the same subdivision under our own bounds; the thesis' method has them there, too. All
-// are points of `standin sweep`, whose placements are those of `place` (a test), each scored by `check` in tests/e2e/baselines.mjs.
+// thesis scales its 16 ms. The sharp one is that of the same subdivision under our own bounds; the thesis' method has them there, too. Table
+// rows are points of `standin sweep`, which writes nothing to check; what ratios are taken of is placed, and scored by `standin check`.
 import { spawnSync } from "node:child_process";
 import { existsSync, mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { dirname, join, resolve } from "node:path";
@@ -95,14 +95,28 @@ class Runs {
   }
 
   row(row) {
-    const references = [this.budget(16), this.budget(16, "sharp_reference")];
+    const references = () => [this.budget(16, "sharp_reference"), this.budget(16)];
     if (row === "budgets") return this.sweep("budgets", SWEPT_MS.map((ms) => this.budget(ms)), ...config("thesis"));
     if (row === "15") return SIDES_M.map((side) => this.maps(side));
-    if (row === "thesis_sharp") return this.sweep(row, [references[1]], ...SHARP);
+    if (row === "thesis_sharp") return this.place(row, [references()[0]], ...SHARP);
     if (row === "ours_as_maps") return this.sweep(row, mapTimes(this.work));
-    if (row in PLACED) return this.sweep(row, references, ...PLACED[row]);
+    if (row in PLACED) return this.place(row, references(), ...PLACED[row]);
     if (!(row in FLAGS)) throw new Error(`no row ${row}`);
     return this.sweep(`row_${row}`, [this.budget(THESIS[row][0])], ...config("thesis"), ...FLAGS[row]);
+  }
+
+  /** Placed and checked at each budget; the same numbers as a sweep's. */
+  place(name, budgets, ...flags) {
+    const points = budgets.map((budget, i) =>
+      this.keep(`${name}_${i}`, () => {
+        const out = this.out(name);
+        launch(this.standin, "place", this.scene, "--target", target, "--budget-ms", `${budget}`, "--quiet", "--survey-views", "1000", "--verify-views", "0", "-o", out, ...flags, ...this.flags);
+        const { budget_ms, cpv, candidates, impostors, memory, stages_s } = read(join(out, "metrics.json"));
+        const { violations } = JSON.parse(launch(this.standin, "check", out, "--json"));
+        rmSync(out, { recursive: true });
+        return { budget_ms, cpv, candidates, impostors: impostors.count, texture_bytes: memory.texture_bytes, stages_s: seconds(stages_s), violations };
+      }));
+    return this.keep(name, () => ({ points }));
   }
 
   maps(side) {
@@ -145,21 +159,22 @@ function printMaps(work, what, thesis) {
   line("15", `${what} (25 m, 300 m)`, ...thesis.map(dash), "-", "-", "-", "-", `${like.cells} cells`, `${mb(like.bytes)} ± ${mb(like.bytes_standard_error)}`, "");
 }
 
-const at = (sweep, budget) => sweep?.points.find((one) => Math.abs(one.budget_ms - budget) < 1e-3);
+const pointsOf = (work, name) => kept(work, name)?.points ?? [0, 1].map((i) => kept(work, `${name}_${i}`)).filter(Boolean);
+const at = (work, name, budget) => pointsOf(work, name).find((one) => Math.abs(one.budget_ms - budget) < 1e-3);
 
 function printRatios(work, which) {
   const reference = kept(work, which);
   if (!reference) return;
-  const found = Object.fromEntries(Object.keys(PLACED).map((name) => [name, at(kept(work, name), reference.budget_ms)]));
-  found.thesis = at(kept(work, which === "reference" ? "budgets" : "thesis_sharp"), reference.budget_ms);
+  const found = Object.fromEntries(Object.keys(PLACED).map((name) => [name, at(work, name, reference.budget_ms)]));
+  found.thesis = at(work, which === "reference" ? "budgets" : "thesis_sharp", reference.budget_ms);
   const whose = which === "reference" ? "the thesis' bounds" : "our bounds";
-  console.log(`\n| placed at ${reference.budget_ms.toFixed(2)} ms (9,078 CPVs in the fixed subdivision under ${whose}) | CPVs | unsolved | candidates | impostors | MB | over ours | must (aim) |\n|---|---|---|---|---|---|---|---|`);
+  console.log(`\n| placed at ${reference.budget_ms.toFixed(2)} ms (9,078 CPVs in the fixed subdivision under ${whose}) | CPVs | unsolved | candidates | impostors | MB | over ours | must (aim) | check: violations |\n|---|---|---|---|---|---|---|---|---|`);
   for (const [name, one] of Object.entries(found)) {
     const [must, aim] = RATIOS[name] ?? [];
     const wanted = must ? `${must}${aim ? ` (${aim})` : ""}` : "";
     const ratio = one && found.ours && name !== "ours" ? (one.texture_bytes / found.ours.texture_bytes).toFixed(2) : "";
-    if (one) line(name, one.cpv.count, one.cpv.unsolved, one.candidates.kept, one.impostors, mb(one.texture_bytes), ratio, wanted);
-    else line(name, "not run", ...Array(5).fill(""), wanted);
+    if (one) line(name, one.cpv.count, one.cpv.unsolved, one.candidates.kept, one.impostors, mb(one.texture_bytes), ratio, wanted, one.violations ?? "a sweep's point");
+    else line(name, "not run", ...Array(5).fill(""), wanted, "");
   }
 }
 
@@ -177,7 +192,7 @@ function printAllMaps(work) {
   const all = allMaps(work);
   if (all.length === 0) return;
   console.log("\n| cells, m | far field, m | cells (baked) | MB | standard error | walk: mean, worst, bound of the worst, ms | greatest bound of a region, ms | ours with that promise: MB, budget (CPVs unsolved) | maps over ours |\n|---|---|---|---|---|---|---|---|---|");
-  const points = ["ours_as_maps", "ours"].flatMap((name) => kept(work, name)?.points ?? []);
+  const points = ["ours_as_maps", "ours"].flatMap((name) => pointsOf(work, name));
   for (const maps of all)
     line(maps.side_m, maps.far_field_m ?? "no maps", `${maps.cells} (${maps.sampled})`, mb(maps.bytes), mb(maps.bytes_standard_error), [maps.walk_mean_ms, maps.walk_worst_ms, maps.walk_worst_bound_ms].map((ms) => ms.toFixed(1)).join(", "), maps.region_bound_ms.toFixed(1), ...asMaps(maps, points));
 }
