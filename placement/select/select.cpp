@@ -37,7 +37,7 @@ class Selector {
 
   double lower_bound(double known_bytes) {
     set_aside();
-    return lagrangian_bound(problem_, columns_, ignored_, known_bytes, config_.bound_iterations, config_.threads, budget_);
+    return lagrangian_bound(problem_, order_, columns_, ignored_, known_bytes, config_.bound_iterations, budget_);
   }
 
  private:
@@ -105,8 +105,7 @@ class Selector {
     SelectionSummary& summary = result_.summary;
     summary.bytes = bytes();
     if (config_.bound_iterations > 0)
-      summary.lower_bound_bytes =
-          lagrangian_bound(problem_, columns_, ignored_, summary.bytes, config_.bound_iterations, config_.threads, budget_);
+      summary.lower_bound_bytes = lagrangian_bound(problem_, order_, columns_, ignored_, summary.bytes, config_.bound_iterations, budget_);
     summary.stop = summary.unmet.empty() ? SelectionSummary::Stop::kAllMet : SelectionSummary::Stop::kSomeUnreachable;
     summary.message = summary.unmet.empty() ? "every region is within budget"
                                             : std::to_string(summary.unmet.size()) + " of " + std::to_string(problem_.cpv_count()) +
