@@ -10,21 +10,17 @@ namespace {
 // Below this, coverages could overflow; dropping a constraint only lowers the bound.
 constexpr double kLeastDeficit = 1e-200;
 
-constexpr int kPlainSweeps = 4;  // before the first step
+constexpr int kPlainSweeps = 2;  // after the first, before the first step
 constexpr double kFirstFactor = 1.5;
 constexpr int kPatience = 6;  // steps without gain before they are shortened
 constexpr double kShorter = 0.6;
 
-// All sweeps together look at so many gains at most, some minutes: with a thousand million of them the bound would take longer than
+// All sweeps together pass over so many gains at most, about a minute: with a thousand million of them the bound would take longer than
 // everything it judges. The first sweeps gain most of it.
-constexpr std::uint64_t kMostGains = 20'000'000'000;
-constexpr std::uint64_t kGainLooks = 10;  // at each gain, by a sweep
-constexpr int kLeastSweeps = 2;
+constexpr std::uint64_t kMostGains = 1'500'000'000;
 
 int affordable_sweeps(std::uint64_t gains, int asked) {
-  const std::uint64_t most = kMostGains / (kGainLooks * std::max<std::uint64_t>(gains, 1));
-  return static_cast<int>(
-      std::min<std::uint64_t>(static_cast<std::uint64_t>(std::max(asked, 0)), std::max<std::uint64_t>(most, kLeastSweeps)));
+  return static_cast<int>(std::min(static_cast<std::uint64_t>(std::max(asked, 0)), kMostGains / std::max<std::uint64_t>(gains, 1)));
 }
 
 }  // namespace
@@ -191,18 +187,20 @@ double BytesSplit::certified(const WorkBudget& budget) {
   return std::max(0.0, value - relative_error * magnitude);
 }
 
-double lagrangian_bound(const SelectionProblem& problem, const TreeOrder& order, const Columns& columns, const std::vector<bool>& ignored,
-                        double upper_bound_bytes, int iterations, const WorkBudget& budget) {
-  BytesSplit split(problem, order, columns, ignored);
+bool improve(BytesSplit& split, double aim_bytes, int iterations, const WorkBudget& budget, SelectionWork& work) {
   const int sweeps = affordable_sweeps(split.gains(), iterations);
   double factor = kFirstFactor;
   int without_gain = 0;
-  for (int i = 0; i <= sweeps; ++i) {
+  bool finished = true;
+  for (int i = 0; i <= sweeps && finished; ++i) {
     const double before = split.best_value();
+    const std::uint64_t work_before = split.work();
     if (i <= kPlainSweeps)
       split.sweep(budget);
     else
-      split.step(factor, upper_bound_bytes, budget);
+      split.step(factor, aim_bytes, budget);
+    work.spend(split.work() - work_before);
+    finished = i == sweeps || !work.exhausted();
     without_gain = split.best_value() > before ? 0 : without_gain + 1;
     if (without_gain < kPatience) continue;
     factor *= kShorter;
@@ -210,6 +208,14 @@ double lagrangian_bound(const SelectionProblem& problem, const TreeOrder& order,
     split.return_to_best();
   }
   split.return_to_best();
+  return finished;
+}
+
+double lagrangian_bound(const SelectionProblem& problem, const TreeOrder& order, const Columns& columns, const std::vector<bool>& ignored,
+                        double aim_bytes, int iterations, const WorkBudget& budget) {
+  BytesSplit split(problem, order, columns, ignored);
+  SelectionWork without_limit;
+  improve(split, aim_bytes, iterations, budget, without_limit);
   return split.certified(budget);
 }
 

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "placement/select/priced_column.h"
+#include "placement/select/selection_work.h"
 #include "placement/select/serving.h"
 #include "render/base/work.h"
 
@@ -86,9 +87,12 @@ class BytesSplit {
   std::uint64_t work_ = 0;
 };
 
-/// `upper_bound_bytes`: of a known solution (it scales the steps). On very large problems fewer steps than `iterations` are made. Rounding
-/// is charged to the bound, so it is never above the optimum.
+/// Sweeps and steps on the best split; `aim_bytes`: of a known solution (it scales the steps). On very large problems fewer than
+/// `iterations` are made. Returns false when the work limit ended it.
+bool improve(BytesSplit& split, double aim_bytes, int iterations, const WorkBudget& budget, SelectionWork& work);
+
+/// Never above the optimum: rounding is charged to the bound.
 [[nodiscard]] double lagrangian_bound(const SelectionProblem& problem, const TreeOrder& order, const Columns& columns,
-                                      const std::vector<bool>& ignored, double upper_bound_bytes, int iterations, const WorkBudget& budget);
+                                      const std::vector<bool>& ignored, double aim_bytes, int iterations, const WorkBudget& budget);
 
 }  // namespace standin

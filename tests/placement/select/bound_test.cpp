@@ -56,9 +56,10 @@ TEST(LagrangianBound, AntichainsAreWhole) {
 }
 
 TEST(LagrangianBound, ImpostorsOfOneClusterDoNotAddUp) {
-  // Cluster 1 gains 2 of the deficit 4, whichever of its three impostors of one byte stands for it: the other cluster's 10 bytes are needed.
-  const auto problem = make_problem(
-      {-1, 0, 0}, {{1, 1.0, {{0, {2.0}}}}, {1, 1.0, {{0, {2.0}}}}, {1, 1.0, {{0, {2.0}}}}, {2, 10.0, {{0, {2.0}}}}}, {4.0});
+  // Cluster 1 gains 2 of the deficit 4, whichever of its three impostors of one byte stands for it: the other cluster's 10 bytes are
+  // needed.
+  const auto problem =
+      make_problem({-1, 0, 0}, {{1, 1.0, {{0, {2.0}}}}, {1, 1.0, {{0, {2.0}}}}, {1, 1.0, {{0, {2.0}}}}, {2, 10.0, {{0, {2.0}}}}}, {4.0});
   const double bound = bound_of(problem, 11.0, 10);
   EXPECT_LE(bound, 11.0);
   EXPECT_GT(bound, 11.0 * (1.0 - 1e-9));
