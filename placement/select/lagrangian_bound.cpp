@@ -15,9 +15,9 @@ constexpr double kFirstFactor = 1.5;
 constexpr int kPatience = 6;  // steps without gain before they are shortened
 constexpr double kShorter = 0.6;
 
-// All sweeps together pass over so many gains at most, about a minute: with a thousand million of them the bound would take longer than
+// All sweeps together pass over so many gains at most, less than a minute: with a thousand million of them the bound would take longer than
 // everything it judges. The first sweeps gain most of it.
-constexpr std::uint64_t kMostGains = 1'500'000'000;
+constexpr std::uint64_t kMostGains = 500'000'000;
 
 int affordable_sweeps(std::uint64_t gains, int asked) {
   return static_cast<int>(std::min(static_cast<std::uint64_t>(std::max(asked, 0)), kMostGains / std::max<std::uint64_t>(gains, 1)));

@@ -9,7 +9,9 @@
 #include <ctime>
 #include <iostream>
 
+#include "placement/select/fewest_shown.h"
 #include "placement/select/greedy.h"
+#include "placement/select/lagrangian_bound.h"
 #include "placement/select/selection_problem.h"
 #include "tests/bench/selection_city.h"
 #include "tests/bench/selection_file.h"
@@ -54,24 +56,56 @@ void time_greedy(const SelectionProblem& problem) {
               static_cast<unsigned long long>(picks.evaluations), plain, peak_mb());
 }
 
-void time_selection(const SelectionProblem& problem) {
+Selection time_selection(const SelectionProblem& problem, const char* name, const SelectionConfig& config) {
   const Watch watch;
-  const Selection selection = select_impostors(problem, {.bound_iterations = 0}, {}, {});
+  Selection selection = select_impostors(problem, config, {}, {});
   const SelectionSummary& s = selection.summary;
-  std::printf("| whole selection | %.2f s | %zu impostors, %.0f bytes after greedy, %.0f at last; %u stalled, %zu unmet | %.0f MB |\n",
-              watch.seconds(), selection.chosen.size(), s.bytes_greedy, s.bytes, s.stalled, s.unmet.size(), peak_mb());
-  for (const int steps : {0, 1, 10, 50, 100, 200}) {
-    const Watch bound_watch;
-    const double bound = memory_lower_bound(problem, s.bytes, {.bound_iterations = steps}, {});
-    std::printf("| bound, %d steps | %.2f s | %.0f bytes, gap %.1f %% |\n", steps, bound_watch.seconds(), bound,
-                100.0 * (s.bytes - bound) / s.bytes);
-  }
+  std::printf("| %s | %.2f s | %zu impostors, %.0f bytes after greedy%s, %.0f at last; %u stalled, %zu unmet; %.3g gains | %.0f MB |\n",
+              name, watch.seconds(), selection.chosen.size(), s.bytes_greedy, s.guided ? " (the second)" : "", s.bytes, s.stalled,
+              s.unmet.size(), static_cast<double>(s.gains), peak_mb());
+  return selection;
+}
+
+enum class Search { kSweeps, kSweepsAndSteps };
+
+void time_bound(const SelectionProblem& problem, const Selection& selection, double limit_s, Search search) {
+  const TreeOrder order(problem.parent);
+  const Columns columns(problem, order);
+  std::vector<bool> ignored(problem.cpv_count());
+  for (std::uint32_t p = 0; p < problem.cpv_count(); ++p) ignored[p] = problem.deficit[p] <= 0.0;
+  for (const Shortfall& shortfall : selection.summary.unmet) ignored[shortfall.cpv] = true;
+  const Watch watch;
+  BytesSplit split(problem, order, columns, ignored);
+  SelectionWork work(UINT64_MAX, [&] { return watch.seconds() >= limit_s; });
+  if (search == Search::kSweepsAndSteps)
+    improve(split, selection.summary.bytes, 1'000'000, {}, work);
+  else
+    while (!work.exhausted()) split.sweep({});
+  const double searched_s = watch.seconds();
+  const double bound = split.certified({});
+  std::printf("| bound, %.0f s%s | %.2f s, %.2f s more to certify | %.0f bytes; gap %.1f %%, %.1f %% before the last look | %.0f MB |\n",
+              limit_s, search == Search::kSweeps ? ", sweeps alone" : "", searched_s, watch.seconds() - searched_s, bound,
+              100.0 * (1.0 - bound / selection.summary.bytes), 100.0 * (1.0 - split.best_value() / selection.summary.bytes), peak_mb());
+}
+
+void count_shown(const SelectionProblem& problem, Selection& selection) {
+  const Watch watch;
+  const ShownImpostors shown = show_fewest(problem, selection, {});
+  std::printf("| fewest shown | %.2f s | %llu impostors in all regions together, %llu before | %.0f MB |\n", watch.seconds(),
+              static_cast<unsigned long long>(shown.after), static_cast<unsigned long long>(shown.before), peak_mb());
 }
 
 void run(const SelectionProblem& problem) {
+  std::setvbuf(stdout, nullptr, _IOLBF, 0);
   describe(problem);
   time_greedy(problem);
-  time_selection(problem);
+  (void)time_selection(problem, "greedy, repair, reverse-delete", {.bound_iterations = 0});
+  (void)time_selection(problem, "with a second greedy", {.guided_sweeps = 6, .bound_iterations = 0});
+  Selection best = time_selection(problem, "and 1,000 trials of ruin and recreate",
+                                  {.guided_sweeps = 6, .recreate_trials = 1000, .bound_iterations = 0});
+  count_shown(problem, best);
+  for (const double limit_s : {1.0, 10.0, 30.0}) time_bound(problem, best, limit_s, Search::kSweepsAndSteps);
+  time_bound(problem, best, 10.0, Search::kSweeps);
 }
 
 }  // namespace
