@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace standin {
 namespace {
@@ -11,9 +12,11 @@ namespace {
 constexpr double kLeastDeficit = 1e-200;
 
 constexpr int kPlainSweeps = 2;  // after the first, before the first step
-constexpr double kFirstFactor = 1.5;
+constexpr double kFirstFactor = 1.0;
 constexpr int kPatience = 6;  // steps without gain before they are shortened
 constexpr double kShorter = 0.6;
+constexpr float kKept = 0.95F;  // of the use so far, each time a constraint is visited
+constexpr float kLeastShare = 0.005F;
 
 // All sweeps together pass over so many gains at most, less than a minute: with a thousand million of them the bound would take longer than
 // everything it judges. The first sweeps gain most of it.
@@ -90,10 +93,16 @@ double BytesSplit::visit(std::uint32_t q) {
   return value;
 }
 
+// Not the latest optimum alone: single ones jump from corner to corner, their mean comes near what all of them together would have.
 void BytesSplit::keep_optimum(std::uint32_t q) {
-  use_[q].clear();
-  for (const PricedColumn::Share& share : column_.optimum())
-    use_[q].push_back({column_.candidate(share.position), static_cast<float>(share.share)});
+  for (Use& use : use_[q]) used_[use.candidate] = use.share *= kKept;
+  for (const PricedColumn::Share& share : column_.optimum()) {
+    const std::uint32_t candidate = column_.candidate(share.position);
+    if (used_[candidate] == 0.0F) use_[q].push_back({candidate, 0.0F});
+    used_[candidate] += (1.0F - kKept) * static_cast<float>(share.share);
+  }
+  for (Use& use : use_[q]) use.share = std::exchange(used_[use.candidate], 0.0F);
+  std::erase_if(use_[q], [](const Use& use) { return use.share < kLeastShare; });
 }
 
 double BytesSplit::sweep(const WorkBudget& budget) {

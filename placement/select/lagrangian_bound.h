@@ -8,7 +8,8 @@
 // factor of ten. ANY split gives a bound, so the search needs no proof of its own:
 //   - a sweep visits one q after the other, gives it its share of the bytes that nobody has claimed yet, and takes back what its optimum
 //     does not need (priced_column.h): no sweep lowers the bound. It ends in a split that no single q can improve, below the best;
-//   - between sweeps, a subgradient step moves bytes towards the q whose fractional optimum uses the candidate.
+//   - between sweeps, a subgradient step moves bytes towards the q whose fractional optimum uses the candidate; it goes by the mean of the
+//     optima so far, of which the latest count most (as in the volume algorithm, Barahona and Anbil 2000).
 // A split is kept as a bid t_q for each q and a potential pi for each entry: w_iq = max(0, t_q a_iq - pi), so that memory does not grow
 // with the number of gains. At the end each q's antichain is asked for without fractions, which raises the bound once more.
 #pragma once
@@ -72,7 +73,7 @@ class BytesSplit {
   std::vector<double> free_;              // per candidate: bytes that nobody pays
   std::vector<std::uint32_t> demands_;    // per candidate: constraints that it helps
   std::vector<std::uint32_t> remaining_;  // of these, not visited yet in this sweep
-  std::vector<std::vector<Use>> use_;     // per q: its fractional optimum
+  std::vector<std::vector<Use>> use_;     // per q: its fractional optima, averaged
   std::uint32_t q_ = 0;                   // the constraint at hand
   // Of the step that the sweep applies as it goes; a length of 0: none.
   double length_ = 0.0;

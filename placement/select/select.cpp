@@ -222,7 +222,8 @@ class Selector {
       if (&cut != &summary.cut_short.front()) message += ", ";
       message += cut.step + " (" + whole(cut.bytes_before) + " bytes before, " + whole(cut.bytes_after) + " after)";
     }
-    return message + "; lower bound so far " + whole(summary.lower_bound_bytes) + " bytes";
+    if (summary.lower_bound_bytes > 0.0) message += "; lower bound so far " + whole(summary.lower_bound_bytes) + " bytes";
+    return message;
   }
 
   static std::string whole(double bytes) { return std::to_string(static_cast<std::uint64_t>(bytes)); }
