@@ -27,7 +27,7 @@ class Selector {
         order_(problem.parent),
         columns_(problem, order_),
         finder_(problem, order_),
-        work_(config.most_gains, config.out_of_time) {}
+        work_(config.most_gains, config.out_of_time, config.gains_before) {}
 
   Selection run(std::span<const std::uint32_t> initial) {
     cover_ = std::make_unique<Cover>(problem_, order_);
@@ -190,7 +190,7 @@ class Selector {
     summary.bytes = bytes();
     const bool greedy_cut_short = !summary.cut_short.empty() && summary.cut_short.front().step == "greedy";
     if (config_.bound_iterations > 0 && !greedy_cut_short) bound();
-    summary.gains = work_.gains();
+    summary.gains = work_.gains() - config_.gains_before;
     using Stop = SelectionSummary::Stop;
     summary.stop = greedy_cut_short ? Stop::kGreedyCutShort : summary.unmet.empty() ? Stop::kAllMet : Stop::kSomeUnreachable;
     summary.message = met_message() + limit_message();

@@ -132,6 +132,7 @@ struct SelectionConfig {
   std::uint64_t recreate_trials = 0;       // of ruin and recreate. Not where `initial` has members
   int bound_iterations = 100;              // sweeps and steps; 0: no lower bound
   std::uint64_t most_gains = UINT64_MAX;   // that all steps together may look at: when passed, they end where they are
+  std::uint64_t gains_before = 0;          // that earlier selections under the same limit have looked at
   std::function<bool()> out_of_time = {};  // a deadline; empty: none. Not deterministic, unless it is
   int threads = 1;                         // the same result for any number
 };

@@ -16,8 +16,9 @@ class SelectionWork {
   enum class Limit { kNone, kWork, kDeadline };
 
   SelectionWork() = default;
-  SelectionWork(std::uint64_t most_gains, std::function<bool()> out_of_time)
-      : most_gains_(most_gains), out_of_time_(std::move(out_of_time)) {}
+  /// `gains`: looked at already.
+  SelectionWork(std::uint64_t most_gains, std::function<bool()> out_of_time, std::uint64_t gains = 0)
+      : most_gains_(most_gains), out_of_time_(std::move(out_of_time)), gains_(gains) {}
 
   void spend(std::uint64_t gains) { gains_ += gains; }
   [[nodiscard]] bool exhausted() {

@@ -171,7 +171,8 @@ class Rounds {
     config.bound_iterations = 0;
     config.threads = world_.threads;
     const auto start = std::chrono::steady_clock::now();
-    if (spec.work_limit_gains > 0) config.most_gains = spec.work_limit_gains - std::min(spec.work_limit_gains, result_.gains);
+    if (spec.work_limit_gains > 0) config.most_gains = spec.work_limit_gains;
+    config.gains_before = result_.gains;
     if (spec.deadline_s > 0.0)
       config.out_of_time = [start, rest_s = spec.deadline_s - selecting_s_] { return seconds_since(start) >= rest_s; };
     result_.selection = select_impostors(problem_, config, result_.selection.chosen, budget_);
