@@ -104,7 +104,7 @@ JobOutcome run_place(const JobFiles& files, const JobSpec& spec, const WorkBudge
   metrics["memory"] = memory_json(placed.placement, placed.set);
   metrics["memory"]["gpu_bytes"] = gpu_bytes_json(placed.set.pages);
   metrics["memory"]["gpu_compression"] = std::move(gpu_compression);
-  metrics["bound"] = bound_json(placed.selected.selection.summary);
+  metrics["bound"] = bound_json(placed.selected);
   metrics["curves"] = curves;
   metrics["verify"] = verify_json(verified);
   metrics["image"] = image_json(verified);

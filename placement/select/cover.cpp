@@ -54,6 +54,15 @@ std::optional<std::vector<Assignment>> Cover::replacements(std::uint32_t candida
   return result;
 }
 
+std::vector<Assignment> Cover::best_without(std::uint32_t candidate) {
+  std::vector<Assignment> result;
+  problem_.for_each_served(candidate, [&](std::uint32_t entry) {
+    const std::uint32_t p = problem_.cpv[entry];
+    if (uses(p, candidate)) result.push_back({p, finder_.best(serving_[p], p, candidate).members});
+  });
+  return result;
+}
+
 std::vector<Assignment> Cover::remove(std::uint32_t candidate, std::vector<Assignment> replacements) {
   in_set_[candidate] = false;
   problem_.for_each_served(candidate, [&](std::uint32_t entry) {

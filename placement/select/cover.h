@@ -28,18 +28,21 @@ class Cover {
   /// Best antichain of S at the CPV, whatever it uses now.
   [[nodiscard]] Antichain best(std::uint32_t cpv) { return finder_.best(serving_[cpv], cpv); }
 
+  [[nodiscard]] bool uses(std::uint32_t cpv, std::uint32_t candidate) const;
+
   void add(std::uint32_t candidate);
   void assign(std::uint32_t cpv, std::vector<Serving> antichain) { antichain_[cpv] = std::move(antichain); }
 
   /// New antichains for all CPVs that use the candidate, without it; nothing if one of them cannot do without.
   [[nodiscard]] std::optional<std::vector<Assignment>> replacements(std::uint32_t candidate);
+  /// The best antichains for all CPVs that use the candidate, without it, whether they meet their CPVs or not.
+  [[nodiscard]] std::vector<Assignment> best_without(std::uint32_t candidate);
   /// Takes the candidate out and switches to its replacements; returns the assignments they replace (for put_back).
   std::vector<Assignment> remove(std::uint32_t candidate, std::vector<Assignment> replacements);
   /// Undoes the latest remove() of the candidate.
   void put_back(std::uint32_t candidate, std::vector<Assignment> previous);
 
  private:
-  [[nodiscard]] bool uses(std::uint32_t cpv, std::uint32_t candidate) const;
   [[nodiscard]] bool before(const Serving& a, const Serving& b) const;
 
   const SelectionProblem& problem_;

@@ -33,9 +33,16 @@ std::vector<double> first_scores(const GreedyState& state, const std::vector<boo
 }  // namespace
 
 GreedyPicks pick_lazily(GreedyState& state, const std::vector<bool>& taken, int threads, const WorkBudget& budget) {
+  SelectionWork without_limit;
+  return pick_lazily(state, taken, threads, budget, without_limit);
+}
+
+GreedyPicks pick_lazily(GreedyState& state, const std::vector<bool>& taken, int threads, const WorkBudget& budget, SelectionWork& work) {
   GreedyPicks picks;
   if (state.all_met()) return picks;
   picks.evaluations = static_cast<std::uint64_t>(std::ranges::count(taken, false));
+  for (std::uint32_t c = 0; c < taken.size(); ++c)
+    if (!taken[c]) work.spend(state.listed(c));
   std::vector<Scored> heap;
   const auto scores = first_scores(state, taken, threads, budget);
   for (std::uint32_t c = 0; c < scores.size(); ++c)
@@ -43,10 +50,15 @@ GreedyPicks pick_lazily(GreedyState& state, const std::vector<bool>& taken, int 
   std::make_heap(heap.begin(), heap.end(), worse);
   const auto score = [&](std::uint32_t candidate) {
     if (++picks.evaluations % 4096 == 0) budget.check();
+    work.spend(state.listed(candidate));
     return state.score(candidate);
   };
 
   while (!state.all_met() && !heap.empty()) {
+    if (work.exhausted()) {
+      picks.cut_short = true;
+      break;
+    }
     std::pop_heap(heap.begin(), heap.end(), worse);
     const Scored top{score(heap.back().candidate), heap.back().candidate};
     heap.pop_back();

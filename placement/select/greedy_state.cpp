@@ -2,11 +2,17 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 namespace standin {
 
-GreedyState::GreedyState(const SelectionProblem& problem, const Columns& columns, const std::vector<bool>& ignored)
-    : problem_(problem), columns_(columns), residual_(problem.deficit), represented_(problem.worth.size(), 0.0) {
+GreedyState::GreedyState(const SelectionProblem& problem, const Columns& columns, const std::vector<bool>& ignored,
+                         std::vector<double> price)
+    : problem_(problem),
+      columns_(columns),
+      price_(price.empty() ? problem.bytes : std::move(price)),
+      residual_(problem.deficit),
+      represented_(problem.worth.size(), 0.0) {
   const std::uint32_t stages = problem.stages;
   for (std::uint32_t p = 0; p < problem.cpv_count(); ++p) {
     if (!ignored.empty() && ignored[p]) std::fill_n(residual_.begin() + static_cast<std::ptrdiff_t>(p) * stages, stages, 0.0);
@@ -32,7 +38,7 @@ double GreedyState::score(std::uint32_t candidate) const {
   } else {
     problem_.for_each_served(candidate, [&](std::uint32_t entry) { sum += term(candidate, entry); });
   }
-  return sum / problem_.bytes[candidate];
+  return sum / price_[candidate];
 }
 
 double GreedyState::term(std::uint32_t candidate, std::uint32_t entry) const {

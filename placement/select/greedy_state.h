@@ -21,8 +21,9 @@ namespace standin {
 
 class GreedyState {
  public:
-  /// CPVs with `ignored[p]` (P flags, or empty) count as met.
-  GreedyState(const SelectionProblem& problem, const Columns& columns, const std::vector<bool>& ignored);
+  /// CPVs with `ignored[p]` (P flags, or empty) count as met. `price`: what scores are divided by, per candidate, > 0; the bytes when
+  /// empty.
+  GreedyState(const SelectionProblem& problem, const Columns& columns, const std::vector<bool>& ignored, std::vector<double> price = {});
 
   /// Puts an antichain of one CPV to use, where nothing is in use yet, whatever its gains (what is baked already).
   void represent(std::span<const Serving> antichain);
@@ -31,6 +32,8 @@ class GreedyState {
   /// Uses the candidate wherever its score comes from.
   void take(std::uint32_t candidate);
 
+  /// Gains that a score looks at.
+  [[nodiscard]] std::uint64_t listed(std::uint32_t candidate) const { return problem_.listed(candidate); }
   [[nodiscard]] bool all_met() const { return unmet_ == 0; }
 
  private:
@@ -43,6 +46,7 @@ class GreedyState {
 
   const SelectionProblem& problem_;
   const Columns& columns_;
+  std::vector<double> price_;
   std::vector<double> residual_;     // P * K
   std::vector<double> represented_;  // per entry * K: sum of the nets accepted inside; infinite below an impostor in use
   std::uint32_t unmet_ = 0;

@@ -3,224 +3,229 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
-
-#include "render/base/parallel.h"
+#include <utility>
 
 namespace standin {
 namespace {
 
-// Below this the price D -> lambda / D could overflow; dropping a constraint only lowers the bound.
+// Below this, coverages could overflow; dropping a constraint only lowers the bound.
 constexpr double kLeastDeficit = 1e-200;
 
-constexpr int kPatience = 10;  // steps
+constexpr int kPlainSweeps = 2;  // after the first, before the first step
+constexpr double kFirstFactor = 1.0;
+constexpr int kPatience = 6;  // steps without gain before they are shortened
+constexpr double kShorter = 0.6;
+constexpr float kKept = 0.95F;  // of the use so far, each time a constraint is visited
+constexpr float kLeastShare = 0.005F;
 
-constexpr std::size_t kChunk = 4096;  // candidates a task
+// All sweeps together pass over so many gains at most, less than a minute: with a thousand million of them the bound would take longer than
+// everything it judges. The first sweeps gain most of it.
+constexpr std::uint64_t kMostGains = 500'000'000;
 
-// All steps together pass over so many gains at most, about a minute: with a thousand million of them the bound would take longer than
-// everything it judges. The first steps gain most of it.
-constexpr std::uint64_t kMostGains = 10'000'000'000;
-constexpr std::uint64_t kLeastSteps = 10;
-
-std::uint64_t gains_of(const SelectionProblem& problem, std::uint32_t candidate) {
-  std::uint64_t gains = 0;
-  for (const BlockRun& run : problem.runs_of(candidate)) gains += problem.block_offset[run.end] - problem.block_offset[run.begin];
-  return gains * problem.stages;
+int affordable_sweeps(std::uint64_t gains, int asked) {
+  return static_cast<int>(std::min(static_cast<std::uint64_t>(std::max(asked, 0)), kMostGains / std::max<std::uint64_t>(gains, 1)));
 }
-
-int affordable_steps(const SelectionProblem& problem, int asked) {
-  std::uint64_t gains = 1;
-  for (std::uint32_t c = 0; c < problem.candidate_count(); ++c) gains += gains_of(problem, c);
-  return static_cast<int>(std::min(static_cast<std::uint64_t>(std::max(asked, 0)), std::max(kLeastSteps, kMostGains / gains)));
-}
-
-/// Constraint q = (CPV, stage) is kept in units of its own deficit: coverage a / D in [0, 1] of a demand of 1, at a price lambda D in
-/// bytes. Deficits of 1e-12 and 1e12 then weigh the same.
-class Dual {
- public:
-  Dual(const SelectionProblem& problem, const Columns& columns, const std::vector<bool>& ignored, int threads)
-      : problem_(problem),
-        columns_(columns),
-        threads_(threads),
-        constraints_(problem.deficit.size()),
-        price_(problem.deficit.size(), 0.0),
-        paid_(problem.candidate_count()) {
-    for (std::size_t q = 0; q < constraints_.size(); ++q)
-      if (problem.deficit[q] > kLeastDeficit && (ignored.empty() || !ignored[q / problem.stages]))
-        constraints_[q].deficit = problem.deficit[q];
-    // Of the longest chain of additions behind the value; its terms are rounded a few times more.
-    const double chain = static_cast<double>(longest_row() + problem.bytes.size() + problem.deficit.size() + 8);
-    relative_error_ = std::max(1e-12, chain * 0.5 * std::numeric_limits<double>::epsilon());
-  }
-
-  /// Raises the price of one constraint after the other, rarest first, until some candidate is paid in full.
-  void ascend(const WorkBudget& budget) {
-    std::vector<double> slack = problem_.bytes;
-    for (const std::uint32_t p : cpvs_by_coverage()) {
-      budget.check();
-      columns_.read(p, column_);
-      for (std::uint32_t k = 0; k < problem_.stages; ++k) raise(p, k, slack);
-    }
-  }
-
-  /// Deflected subgradient from the present prices; returns the best value seen. Where the relaxation has a gap, steps aimed at a known
-  /// solution overshoot for ever: after a while without gain they are halved and start again from the best prices.
-  double improve(double upper_bound_bytes, int iterations, const WorkBudget& budget) {
-    std::vector<double> shortage(price_.size());
-    std::vector<double> direction(price_.size(), 0.0);
-    Best best{evaluate(shortage, budget), price_, shortage};
-    double step_scale = 1.0;
-    int without_gain = 0;
-    for (int i = 0; i < iterations; ++i) {
-      budget.check();
-      const double squared = deflect(direction, shortage);
-      if (squared <= 0.0) break;  // optimal prices
-      const double step = step_scale * std::max(upper_bound_bytes - best.value, 1e-3 * upper_bound_bytes) / squared;
-      for (std::size_t q = 0; q < direction.size(); ++q) price_[q] = std::max(0.0, price_[q] + step * direction[q]);
-      if (const double value = evaluate(shortage, budget); value > best.value) {
-        best = {value, price_, shortage};
-        without_gain = 0;
-      } else if (++without_gain == kPatience) {
-        price_ = best.price;
-        shortage = best.shortage;
-        std::fill(direction.begin(), direction.end(), 0.0);
-        step_scale *= 0.5;
-        without_gain = 0;
-      }
-    }
-    return best.value;
-  }
-
- private:
-  struct Best {
-    double value = 0.0;
-    std::vector<double> price;
-    std::vector<double> shortage;
-  };
-  struct Constraint {
-    double deficit = 0.0;         // 0: dropped
-    double bytes_per_gain = 0.0;  // price / deficit
-  };
-
-  [[nodiscard]] std::size_t constraint(std::uint32_t entry, std::uint32_t stage) const {
-    return static_cast<std::size_t>(problem_.cpv[entry]) * problem_.stages + stage;
-  }
-  /// a = min(max(gain, 0), deficit), 0 for a dropped constraint.
-  [[nodiscard]] double useful_gain(const Serving& s, std::uint32_t stage) const {
-    return std::max(0.0, std::min(problem_.gain(s.candidate, s.entry, stage), constraints_[constraint(s.entry, stage)].deficit));
-  }
-
-  void raise(std::uint32_t cpv, std::uint32_t stage, std::vector<double>& slack) {
-    const std::size_t q = static_cast<std::size_t>(cpv) * problem_.stages + stage;
-    const double deficit = constraints_[q].deficit;
-    double most = std::numeric_limits<double>::infinity();
-    for (const Serving& s : column_)
-      if (const double useful = useful_gain(s, stage); useful > 0.0) most = std::min(most, slack[s.candidate] / (useful / deficit));
-    if (!(most > 0.0) || std::isinf(most)) return;
-    price_[q] = most;
-    for (const Serving& s : column_)
-      if (const double useful = useful_gain(s, stage); useful > 0.0) slack[s.candidate] -= most * (useful / deficit);
-  }
-
-  /// L(price) less its rounding error; `shortage[q]` becomes 1 - coverage by the candidates that are worth their price (a subgradient).
-  double evaluate(std::vector<double>& shortage, const WorkBudget& budget) {
-    double value = 0.0;
-    for (std::size_t q = 0; q < price_.size(); ++q) {
-      const bool dropped = constraints_[q].deficit <= 0.0;
-      shortage[q] = dropped ? 0.0 : 1.0;
-      constraints_[q].bytes_per_gain = dropped ? 0.0 : price_[q] / constraints_[q].deficit;
-      value += price_[q];
-    }
-    double magnitude = value;
-    collect_payments(budget);
-    for (std::uint32_t c = 0; c < problem_.candidate_count(); ++c) {
-      magnitude += paid_[c];
-      if (paid_[c] <= problem_.bytes[c]) continue;
-      value += problem_.bytes[c] - paid_[c];
-      magnitude += problem_.bytes[c];
-      cover_with(c, shortage);
-    }
-    return value - relative_error_ * magnitude;
-  }
-
-  /// Turns `direction` towards the shortage and returns its squared length. A price of 0 cannot fall: no part of the step.
-  double deflect(std::vector<double>& direction, const std::vector<double>& shortage) const {
-    double squared = 0.0;
-    for (std::size_t q = 0; q < direction.size(); ++q) {
-      direction[q] = 0.7 * shortage[q] + 0.3 * direction[q];
-      if (price_[q] == 0.0) direction[q] = std::max(direction[q], 0.0);
-      squared += direction[q] * direction[q];
-    }
-    return squared;
-  }
-
-  void collect_payments(const WorkBudget& budget) {
-    const std::size_t chunks = (paid_.size() + kChunk - 1) / kChunk;
-    parallel_for(chunks, threads_, budget, [&](std::size_t chunk) {
-      const std::size_t end = std::min(paid_.size(), (chunk + 1) * kChunk);
-      for (std::size_t c = chunk * kChunk; c < end; ++c) paid_[c] = payment(static_cast<std::uint32_t>(c));
-    });
-  }
-
-  // Nearly all of the bound's time: one line per gain of the problem.
-  [[nodiscard]] double payment(std::uint32_t candidate) const {
-    const std::size_t stages = problem_.stages;
-    const double* costs = problem_.cost.data() + candidate * problem_.forms * stages;
-    double sum = 0.0;
-    for (const BlockRun& run : problem_.runs_of(candidate)) {
-      const std::size_t end = problem_.block_offset[run.end];
-      for (std::size_t e = problem_.block_offset[run.begin]; e < end; ++e) {
-        const std::size_t p = problem_.cpv[e];
-        const double* cost = costs + problem_.form[p] * stages;
-        for (std::size_t k = 0; k < stages; ++k) {
-          const Constraint& at = constraints_[p * stages + k];
-          sum += at.bytes_per_gain * std::max(0.0, std::min(problem_.worth[e * stages + k] - cost[k], at.deficit));
-        }
-      }
-    }
-    return sum;
-  }
-
-  void cover_with(std::uint32_t candidate, std::vector<double>& shortage) const {
-    problem_.for_each_served(candidate, [&](std::uint32_t entry) {
-      for (std::uint32_t k = 0; k < problem_.stages; ++k)
-        if (const double useful = useful_gain({candidate, entry}, k); useful > 0.0)
-          shortage[constraint(entry, k)] -= useful / constraints_[constraint(entry, k)].deficit;
-    });
-  }
-
-  [[nodiscard]] std::vector<std::uint32_t> cpvs_by_coverage() const {
-    std::vector<std::uint32_t> cpvs(problem_.cpv_count());
-    std::vector<std::uint64_t> coverage(problem_.cpv_count());
-    std::iota(cpvs.begin(), cpvs.end(), 0U);
-    for (const std::uint32_t p : cpvs) coverage[p] = columns_.coverage(p);
-    std::stable_sort(cpvs.begin(), cpvs.end(), [&](std::uint32_t a, std::uint32_t b) { return coverage[a] < coverage[b]; });
-    return cpvs;
-  }
-
-  [[nodiscard]] std::uint64_t longest_row() const {
-    std::uint64_t longest = 0;
-    for (std::uint32_t c = 0; c < problem_.candidate_count(); ++c) longest = std::max(longest, gains_of(problem_, c));
-    return longest;
-  }
-
-  const SelectionProblem& problem_;
-  const Columns& columns_;
-  int threads_;
-  std::vector<Constraint> constraints_;
-  std::vector<double> price_;    // bytes, >= 0
-  std::vector<double> paid_;     // per candidate, at these prices
-  std::vector<Serving> column_;  // of the CPV at hand
-  double relative_error_ = 0.0;
-};
 
 }  // namespace
 
-double lagrangian_bound(const SelectionProblem& problem, const Columns& columns, const std::vector<bool>& ignored, double upper_bound_bytes,
-                        int iterations, int threads, const WorkBudget& budget) {
-  Dual dual(problem, columns, ignored, threads);
-  dual.ascend(budget);
-  return std::max(0.0, dual.improve(upper_bound_bytes, affordable_steps(problem, iterations), budget));
+BytesSplit::BytesSplit(const SelectionProblem& problem, const TreeOrder& order, const Columns& columns, const std::vector<bool>& ignored)
+    : problem_(problem),
+      columns_(columns),
+      column_(problem, order),
+      bid_(problem.deficit.size(), 0.0),
+      potential_(problem.worth.size(), 0.0),
+      free_(problem.bytes),
+      demands_(problem.candidate_count(), 0),
+      use_(problem.deficit.size()),
+      mean_use_(problem.candidate_count(), 0.0),
+      shrink_(problem.candidate_count(), 1.0),
+      used_(problem.candidate_count(), 0.0F) {
+  for (std::uint32_t q = 0; q < problem.deficit.size(); ++q)
+    if (problem.deficit[q] > kLeastDeficit && (ignored.empty() || !ignored[q / problem.stages])) active_.push_back(q);
+  for (const std::uint32_t q : active_) {
+    load(q);
+    gains_ += column_.size();
+    for (std::uint32_t i = 0; i < column_.size(); ++i) ++demands_[column_.candidate(i)];
+  }
+  keep_as_best();
+}
+
+void BytesSplit::load(std::uint32_t q) {
+  columns_.read(q / problem_.stages, servings_);
+  column_.load(servings_, q / problem_.stages, q % problem_.stages);
+  q_ = q;
+  work_ += column_.size();
+}
+
+double BytesSplit::payment(const PricedColumn::Group& group, std::uint32_t position) const {
+  const double potential = potential_[static_cast<std::size_t>(group.entry) * problem_.stages + q_ % problem_.stages];
+  return std::max(0.0, bid_[q_] * column_.coverage(position) - potential);
+}
+
+template <class Visit>
+void BytesSplit::for_each_payment(Visit&& visit) const {
+  for (const PricedColumn::Group& group : column_.groups())
+    for (std::uint32_t i = group.begin; i < group.end; ++i) visit(i, column_.candidate(i), payment(group, i));
+}
+
+double BytesSplit::shifted(std::uint32_t candidate, double payment) const {
+  if (length_ == 0.0) return payment;
+  return shrink_[candidate] * std::max(0.0, payment + length_ * (static_cast<double>(used_[candidate]) - mean_use_[candidate]));
+}
+
+double BytesSplit::visit(std::uint32_t q) {
+  load(q);
+  for (const Use& use : use_[q]) used_[use.candidate] = use.share;
+  for_each_payment([&](std::uint32_t i, std::uint32_t candidate, double paid) {
+    const double now = shifted(candidate, paid);
+    column_.set_price(i, now + std::max(0.0, free_[candidate]) / remaining_[candidate]--);
+    free_[candidate] += now;
+  });
+  for (const Use& use : use_[q]) used_[use.candidate] = 0.0F;
+
+  const double value = column_.maximise(bid_[q]);
+  keep_optimum(q);
+  column_.settle();
+  bid_[q] = column_.bid();
+  for (const PricedColumn::Group& group : column_.groups())
+    potential_[static_cast<std::size_t>(group.entry) * problem_.stages + q % problem_.stages] = group.potential;
+  for_each_payment([&](std::uint32_t, std::uint32_t candidate, double paid) { free_[candidate] -= paid; });
+  return value;
+}
+
+// Not the latest optimum alone: single ones jump from corner to corner, their mean comes near what all of them together would have.
+void BytesSplit::keep_optimum(std::uint32_t q) {
+  for (Use& use : use_[q]) used_[use.candidate] = use.share *= kKept;
+  for (const PricedColumn::Share& share : column_.optimum()) {
+    const std::uint32_t candidate = column_.candidate(share.position);
+    if (used_[candidate] == 0.0F) use_[q].push_back({candidate, 0.0F});
+    used_[candidate] += (1.0F - kKept) * static_cast<float>(share.share);
+  }
+  for (Use& use : use_[q]) use.share = std::exchange(used_[use.candidate], 0.0F);
+  std::erase_if(use_[q], [](const Use& use) { return use.share < kLeastShare; });
+}
+
+double BytesSplit::sweep(const WorkBudget& budget) {
+  remaining_ = demands_;
+  value_ = 0.0;
+  for (std::size_t i = 0; i < active_.size(); ++i) {
+    if (i % 64 == 0) budget.check();
+    value_ += visit(active_[forwards_ ? i : active_.size() - 1 - i]);
+  }
+  for (const double bytes : free_) value_ += std::min(bytes, 0.0);
+  forwards_ = !forwards_;
+  length_ = 0.0;
+  if (value_ > best_value_) keep_as_best();
+  return value_;
+}
+
+double BytesSplit::step(double factor, double aim_bytes, const WorkBudget& budget) {
+  shift_payments(factor, aim_bytes, budget);
+  return sweep(budget);
+}
+
+// Towards use_ less its mean over the constraints of each candidate, so that the payments of a candidate keep their sum.
+void BytesSplit::shift_payments(double factor, double aim_bytes, const WorkBudget& budget) {
+  std::fill(mean_use_.begin(), mean_use_.end(), 0.0);
+  double squared = 0.0;
+  for (const auto& uses : use_)
+    for (const Use& use : uses) {
+      squared += static_cast<double>(use.share) * use.share;
+      mean_use_[use.candidate] += use.share;
+    }
+  for (std::size_t c = 0; c < mean_use_.size(); ++c) {
+    if (demands_[c] == 0) continue;
+    squared -= mean_use_[c] * mean_use_[c] / demands_[c];
+    mean_use_[c] /= demands_[c];
+  }
+  if (!(squared > 1e-9)) return;  // everybody uses the same
+  length_ = factor * std::max(aim_bytes - value_, 1e-3 * aim_bytes) / squared;
+
+  std::fill(shrink_.begin(), shrink_.end(), 1.0);
+  free_ = problem_.bytes;
+  for (const std::uint32_t q : active_) {
+    budget.check();
+    load(q);
+    for (const Use& use : use_[q]) used_[use.candidate] = use.share;
+    for_each_payment([&](std::uint32_t, std::uint32_t candidate, double paid) { free_[candidate] -= shifted(candidate, paid); });
+    for (const Use& use : use_[q]) used_[use.candidate] = 0.0F;
+  }
+  for (std::size_t c = 0; c < free_.size(); ++c) {
+    if (free_[c] >= 0.0) continue;
+    shrink_[c] = problem_.bytes[c] / (problem_.bytes[c] - free_[c]);
+    free_[c] = 0.0;
+  }
+}
+
+void BytesSplit::keep_as_best() {
+  best_value_ = value_;
+  best_bid_ = bid_;
+  best_potential_ = potential_;
+  best_free_ = free_;
+}
+
+void BytesSplit::return_to_best() {
+  value_ = best_value_;
+  bid_ = best_bid_;
+  potential_ = best_potential_;
+  free_ = best_free_;
+}
+
+double BytesSplit::certified(const WorkBudget& budget) {
+  std::vector<double> claimed(problem_.candidate_count(), 0.0);
+  double value = 0.0, magnitude = 0.0;
+  for (const std::uint32_t q : active_) {
+    budget.check();
+    load(q);
+    for_each_payment([&](std::uint32_t i, std::uint32_t candidate, double paid) {
+      column_.set_price(i, paid);
+      claimed[candidate] += paid;
+    });
+    const double least = column_.value(bid_[q]);
+    const double whole = column_.whole_value();
+    value += std::max({0.0, least, std::isfinite(whole) ? whole : 0.0});
+    magnitude += 2.0 * bid_[q] + std::abs(least);
+  }
+  for (std::size_t c = 0; c < claimed.size(); ++c) {
+    value -= std::max(0.0, claimed[c] - problem_.bytes[c]);
+    magnitude += claimed[c];
+  }
+  // Of the longest chain of additions behind the value; its terms are rounded a few times more.
+  const double chain = static_cast<double>(active_.size() + problem_.bytes.size() + problem_.parent.size() + 8);
+  const double relative_error = std::max(1e-12, chain * 0.5 * std::numeric_limits<double>::epsilon());
+  return std::max(0.0, value - relative_error * magnitude);
+}
+
+bool improve(BytesSplit& split, double aim_bytes, int iterations, const WorkBudget& budget, SelectionWork& work) {
+  const int sweeps = affordable_sweeps(split.gains(), iterations);
+  double factor = kFirstFactor;
+  int without_gain = 0;
+  bool finished = true;
+  for (int i = 0; i <= sweeps && finished; ++i) {
+    const double before = split.best_value();
+    const std::uint64_t work_before = split.work();
+    if (i <= kPlainSweeps)
+      split.sweep(budget);
+    else
+      split.step(factor, aim_bytes, budget);
+    work.spend(split.work() - work_before);
+    finished = i == sweeps || !work.exhausted();
+    without_gain = split.best_value() > before ? 0 : without_gain + 1;
+    if (without_gain < kPatience) continue;
+    factor *= kShorter;
+    without_gain = 0;
+    split.return_to_best();
+  }
+  split.return_to_best();
+  return finished;
+}
+
+double lagrangian_bound(const SelectionProblem& problem, const TreeOrder& order, const Columns& columns, const std::vector<bool>& ignored,
+                        double aim_bytes, int iterations, const WorkBudget& budget) {
+  BytesSplit split(problem, order, columns, ignored);
+  SelectionWork without_limit;
+  improve(split, aim_bytes, iterations, budget, without_limit);
+  return split.certified(budget);
 }
 
 }  // namespace standin

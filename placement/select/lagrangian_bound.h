@@ -1,25 +1,99 @@
-// A lower bound on the bytes of any solution (math.md 5.5).
+// A lower bound on the bytes of any solution, by splitting them (math.md 5.5, taken further).
 //
-// Drop the antichain condition and allow fractions: min m.y subject to sum_i a_iq y_i >= D_q, 0 <= y <= 1, with q = (CPV, stage) and a_iq =
-// min(max(g_iq, 0), D_q). For ANY multipliers lambda >= 0,
-//     L(lambda) = sum_q D_q lambda_q + sum_i min(0, m_i - sum_q a_iq lambda_q)  <=  bytes of any feasible set,
-// so the search for good multipliers needs no proof of its own. It starts by dual ascent (raise one multiplier until a candidate is paid
-// for in full) and goes on by a deflected subgradient (Camerini, Fratta, Maffioli 1975; step rule of Held, Wolfe, Crowder 1974). Every step
-// is one pass over the gains: the bound improves with time, and any prefix of it is valid. It is weak where a cluster has many overlapping
-// shafts: the relaxation may count several impostors of one cluster in the same CPV.
+// Let every covering constraint q = (CPV, stage) pay a part w_iq >= 0 of candidate i's bytes. If the parts of each candidate add up to no
+// more than its bytes m_i, then
+//     sum over q of  (cheapest antichain that meets q alone, at prices w_q)  <=  bytes of any feasible set:
+// the set's bytes cover all the parts, and at each q it contains an antichain. This is Lagrangian decomposition (Guignard and Kim 1987): it
+// knows that impostors of one cluster do not add up at a CPV, which the sum over all candidates of 5.5 forgets; in cities that alone is a
+// factor of ten. ANY split gives a bound, so the search needs no proof of its own:
+//   - a sweep visits one q after the other, gives it its share of the bytes that nobody has claimed yet, and takes back what its optimum
+//     does not need (priced_column.h): no sweep lowers the bound. It ends in a split that no single q can improve, below the best;
+//   - between sweeps, a subgradient step moves bytes towards the q whose fractional optimum uses the candidate; it goes by the mean of the
+//     optima so far, of which the latest count most (as in the volume algorithm, Barahona and Anbil 2000).
+// A split is kept as a bid t_q for each q and a potential pi for each entry: w_iq = max(0, t_q a_iq - pi), so that memory does not grow
+// with the number of gains. At the end each q's antichain is asked for without fractions, which raises the bound once more.
 #pragma once
 
+#include <span>
 #include <vector>
 
+#include "placement/select/priced_column.h"
+#include "placement/select/selection_work.h"
 #include "placement/select/serving.h"
 #include "render/base/work.h"
 
 namespace standin {
 
-/// Rows of CPVs with `ignored[p]` are dropped. `upper_bound_bytes`: of a known solution (it scales the steps). On very large problems fewer
-/// steps than `iterations` are made. 0 iterations: the ascent alone. Rounding is charged to the bound, so it is never above the optimum.
-/// The same for any number of threads.
-[[nodiscard]] double lagrangian_bound(const SelectionProblem& problem, const Columns& columns, const std::vector<bool>& ignored,
-                                      double upper_bound_bytes, int iterations, int threads, const WorkBudget& budget);
+class BytesSplit {
+ public:
+  /// Rows of CPVs with `ignored[p]` are dropped.
+  BytesSplit(const SelectionProblem& problem, const TreeOrder& order, const Columns& columns, const std::vector<bool>& ignored);
+
+  /// One sweep, forwards and backwards in turn; returns the bound that the split now gives, without its rounding error.
+  double sweep(const WorkBudget& budget);
+  /// A subgradient step of the given length factor towards `aim_bytes`, then a sweep.
+  double step(double factor, double aim_bytes, const WorkBudget& budget);
+
+  /// Of the best sweep so far.
+  [[nodiscard]] double best_value() const { return best_value_; }
+  void return_to_best();
+
+  /// Bytes of the candidate that no constraint pays: its reduced cost.
+  [[nodiscard]] double unclaimed_bytes(std::uint32_t candidate) const { return free_[candidate]; }
+  /// Proven bound of the split, less all rounding errors, with whole antichains.
+  [[nodiscard]] double certified(const WorkBudget& budget);
+
+  [[nodiscard]] std::uint64_t gains() const { return gains_; }
+  /// Gains looked at so far: the unit of work.
+  [[nodiscard]] std::uint64_t work() const { return work_ + column_.looked_at(); }
+
+ private:
+  struct Use {
+    std::uint32_t candidate = 0;
+    float share = 0.0F;
+  };
+
+  void load(std::uint32_t q);
+  [[nodiscard]] double payment(const PricedColumn::Group& group, std::uint32_t position) const;
+  template <class Visit>
+  void for_each_payment(Visit&& visit) const;
+  double visit(std::uint32_t q);
+  void keep_optimum(std::uint32_t q);
+  void shift_payments(double factor, double aim_bytes, const WorkBudget& budget);
+  void keep_as_best();
+  [[nodiscard]] double shifted(std::uint32_t candidate, double payment) const;
+
+  const SelectionProblem& problem_;
+  const Columns& columns_;
+  PricedColumn column_;
+  std::vector<Serving> servings_;
+  std::vector<std::uint32_t> active_;     // constraints q
+  std::vector<double> bid_;               // per q
+  std::vector<double> potential_;         // per entry * K
+  std::vector<double> free_;              // per candidate: bytes that nobody pays
+  std::vector<std::uint32_t> demands_;    // per candidate: constraints that it helps
+  std::vector<std::uint32_t> remaining_;  // of these, not visited yet in this sweep
+  std::vector<std::vector<Use>> use_;     // per q: its fractional optima, averaged
+  std::uint32_t q_ = 0;                   // the constraint at hand
+  // Of the step that the sweep applies as it goes; a length of 0: none.
+  double length_ = 0.0;
+  std::vector<double> mean_use_;  // per candidate
+  std::vector<double> shrink_;    // per candidate: so that its payments stay within its bytes
+  std::vector<float> used_;       // per candidate: its share in use_[q_]
+  double value_ = 0.0;            // of the latest sweep
+  double best_value_ = 0.0;
+  std::vector<double> best_bid_, best_potential_, best_free_;
+  bool forwards_ = true;
+  std::uint64_t gains_ = 0;
+  std::uint64_t work_ = 0;
+};
+
+/// Sweeps and steps on the best split; `aim_bytes`: of a known solution (it scales the steps). On very large problems fewer than
+/// `iterations` are made. Returns false when the work limit ended it.
+bool improve(BytesSplit& split, double aim_bytes, int iterations, const WorkBudget& budget, SelectionWork& work);
+
+/// Never above the optimum: rounding is charged to the bound.
+[[nodiscard]] double lagrangian_bound(const SelectionProblem& problem, const TreeOrder& order, const Columns& columns,
+                                      const std::vector<bool>& ignored, double aim_bytes, int iterations, const WorkBudget& budget);
 
 }  // namespace standin

@@ -53,24 +53,30 @@ bool try_exchange(const SelectionProblem& problem, Cover& cover, std::uint32_t c
 
 }  // namespace
 
-void reverse_delete(const SelectionProblem& problem, Cover& cover, const WorkBudget& budget) {
+bool reverse_delete(const SelectionProblem& problem, Cover& cover, const WorkBudget& budget, SelectionWork& work) {
   std::vector<std::uint32_t> members = cover.members();
   sort_by_falling_bytes(problem, members);
   for (const std::uint32_t member : members) {
     budget.check();
+    if (work.exhausted()) return false;
+    work.spend(problem.listed(member));
     if (auto replacements = cover.replacements(member)) cover.remove(member, std::move(*replacements));
   }
+  return true;
 }
 
-void exchange(const SelectionProblem& problem, Cover& cover, int rounds, const WorkBudget& budget) {
+bool exchange(const SelectionProblem& problem, Cover& cover, int rounds, const WorkBudget& budget, SelectionWork& work) {
   for (int round = 0; round < rounds; ++round) {
     bool improved = false;
     for (std::uint32_t c = 0; c < problem.candidate_count(); ++c) {
       budget.check();
+      if (work.exhausted()) return false;
+      work.spend(problem.listed(c));
       if (!cover.contains(c) && try_exchange(problem, cover, c)) improved = true;
     }
-    if (!improved) return;
+    if (!improved) break;
   }
+  return true;
 }
 
 }  // namespace standin

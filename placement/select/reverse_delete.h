@@ -5,14 +5,17 @@
 #pragma once
 
 #include "placement/select/cover.h"
+#include "placement/select/selection_work.h"
 #include "render/base/work.h"
 
 namespace standin {
 
 /// Tries the members of `cover` once, by descending bytes (ties: lower id). What remains is minimal: no single member can go.
-void reverse_delete(const SelectionProblem& problem, Cover& cover, const WorkBudget& budget);
+/// Returns false when the work limit ended it.
+bool reverse_delete(const SelectionProblem& problem, Cover& cover, const WorkBudget& budget, SelectionWork& work);
 
-/// Up to `rounds` passes over all candidates, fewer once a pass improves nothing. Keeps the cover minimal.
-void exchange(const SelectionProblem& problem, Cover& cover, int rounds, const WorkBudget& budget);
+/// Up to `rounds` passes over all candidates, fewer once a pass improves nothing. Keeps the cover minimal. Returns false when the work
+/// limit ended it.
+bool exchange(const SelectionProblem& problem, Cover& cover, int rounds, const WorkBudget& budget, SelectionWork& work);
 
 }  // namespace standin

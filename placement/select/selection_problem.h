@@ -16,6 +16,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -59,6 +60,12 @@ struct SelectionProblem {
   [[nodiscard]] const double* costs(std::uint32_t candidate, std::uint32_t at_cpv) const {
     return cost.data() + (static_cast<std::size_t>(candidate) * forms + form[at_cpv]) * stages;
   }
+  /// How many entries the candidate lists.
+  [[nodiscard]] std::uint64_t listed(std::uint32_t candidate) const {
+    std::uint64_t entries = 0;
+    for (const BlockRun& run : runs_of(candidate)) entries += block_offset[run.end] - block_offset[run.begin];
+    return entries;
+  }
   /// `entry`: in a block of the candidate.
   [[nodiscard]] double gain(std::uint32_t candidate, std::uint32_t entry, std::uint32_t stage) const {
     return worth[static_cast<std::size_t>(entry) * stages + stage] - costs(candidate, cpv[entry])[stage];
@@ -89,16 +96,27 @@ struct Shortfall {
   double residual = 0.0;  // what is missing with the best antichain over ALL candidates (math.md 5.4)
 };
 
+/// A step that a limit cut short, or kept from beginning.
+struct CutShort {
+  std::string step;
+  double bytes_before = 0.0;
+  double bytes_after = 0.0;
+};
+
 struct SelectionSummary {
-  enum class Stop { kAllMet, kSomeUnreachable } stop = Stop::kAllMet;
+  enum class Stop { kAllMet, kSomeUnreachable, kGreedyCutShort } stop = Stop::kAllMet;
   std::string message;
   double bytes_greedy = 0.0;       // after greedy and stall repair
   double bytes = 0.0;              // after reverse-delete and exchange
-  double lower_bound_bytes = 0.0;  // Lagrangian (math.md 5.5), of the instance without its unreachable CPVs
+  double lower_bound_bytes = 0.0;  // lagrangian_bound.h, of the instance without its unreachable CPVs
   std::uint32_t picked_by_greedy = 0;
   std::uint32_t stalled = 0;      // CPVs that the stall repair had to solve
   std::uint64_t evaluations = 0;  // score evaluations
-  std::vector<Shortfall> unmet;   // empty iff kAllMet
+  std::uint64_t gains = 0;        // looked at by all steps: the unit of `most_gains`
+  bool guided = false;            // the greedy that won went by prices of the lower bound
+  std::uint64_t trials = 0;       // of ruin and recreate
+  std::vector<CutShort> cut_short;
+  std::vector<Shortfall> unmet;  // empty iff kAllMet; of a greedy cut short, what is missing with what is chosen
 };
 
 struct Selection {
@@ -109,10 +127,15 @@ struct Selection {
 
 struct SelectionConfig {
   bool lazy = true;            // false: plain greedy, the oracle
+  int guided_sweeps = 0;       // of the lower bound's search, for a second greedy at its prices; 0: none. Not where `initial` has members
   bool reverse_delete = true;  // false: what the greedy picks is kept
   int exchange_rounds = 0;     // each round tries to add one and delete others
-  int bound_iterations = 100;  // subgradient steps; 0: no lower bound
-  int threads = 1;             // the same result for any number
+  std::uint64_t recreate_trials = 0;       // of ruin and recreate. Not where `initial` has members
+  int bound_iterations = 100;              // sweeps and steps; 0: no lower bound
+  std::uint64_t most_gains = UINT64_MAX;   // that all steps together may look at: when passed, they end where they are
+  std::uint64_t gains_before = 0;          // that earlier selections under the same limit have looked at
+  std::function<bool()> out_of_time = {};  // a deadline; empty: none. Not deterministic, unless it is
+  int threads = 1;                         // the same result for any number
 };
 
 /// `initial`: candidates that are already in S (a repair after baking); greedy goes on from there. Deterministic: ties by score, then lower
@@ -120,8 +143,8 @@ struct SelectionConfig {
 [[nodiscard]] Selection select_impostors(const SelectionProblem& problem, const SelectionConfig& config,
                                          std::span<const std::uint32_t> initial, const WorkBudget& budget);
 
-/// Lower bound on the bytes of any selection that meets every reachable CPV (math.md 5.5), from `config.bound_iterations` subgradient
-/// steps. `known_bytes`: of a known selection.
+/// Lower bound on the bytes of any selection that meets every reachable CPV, from `config.bound_iterations` steps. `known_bytes`: of a
+/// known selection.
 [[nodiscard]] double memory_lower_bound(const SelectionProblem& problem, double known_bytes, const SelectionConfig& config,
                                         const WorkBudget& budget);
 

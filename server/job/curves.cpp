@@ -130,12 +130,12 @@ json view_space_curve(const World& world, const TimeModel& model, const Subdivis
 
 json select_curve(const SelectedImpostors& selected, const StageClock& clock) {
   json curve = json::array();
-  const double bound_bytes = selected.selection.summary.lower_bound_bytes;
+  const double bound_bytes = selected.as_selected.lower_bound_bytes;
   const auto laps = last_laps(clock.laps("select"), selected.rounds.size(), 1);
   for (std::size_t i = 0; i < laps.size() && i < selected.rounds.size(); ++i)
     if (const double bytes = selected.rounds[i].real_bytes; bytes > 0.0)
       curve.push_back(
-          point(laps[i], static_cast<double>(i + 1), (bytes - bound_bytes) / bytes, "gap to the lower bound, share of the bytes"));
+          point(laps[i], static_cast<double>(i + 1), (bytes - bound_bytes) / bytes, "gap to the lower bound at the sizes that the selection knew, share of the bytes"));
   return curve;
 }
 

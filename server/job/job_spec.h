@@ -54,7 +54,11 @@ struct JobSpec {
   std::uint32_t max_layers = 0;  // 0: 200 for walk, 400 for orbit
   bool fuzzy = false;            // masked surfaces without outlines: no image promise where they are
   bool keep_picks = false;
+  int guided_sweeps = 6;
   int exchange_rounds = 0;
+  std::uint64_t recreate_trials = 0;
+  std::uint64_t work_limit_gains = 0;  // 0: none
+  double deadline_s = 0.0;             // 0: none
   int bound_iterations = 100;
   int bake_rounds = 10;
   std::uint32_t size_bakes = 48;

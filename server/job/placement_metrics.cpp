@@ -52,8 +52,15 @@ json select_metrics(const SelectedImpostors& selected, const Placement& placemen
                       {"estimated_bytes", round.estimated_bytes},
                       {"real_bytes", round.real_bytes}});
   const SelectionSummary& summary = selected.selection.summary;
-  return {{"message", select_message(selected)}, {"picked_by_greedy", summary.picked_by_greedy}, {"stalled", summary.stalled},
-          {"evaluations", summary.evaluations},  {"bytes_greedy", summary.bytes_greedy},         {"impostors", placement.impostors.size()},
+  return {{"message", select_message(selected)},
+          {"picked_by_greedy", summary.picked_by_greedy},
+          {"stalled", summary.stalled},
+          {"evaluations", summary.evaluations},
+          {"gains", selected.gains},
+          {"limits", selected.limits},
+          {"bytes_greedy", summary.bytes_greedy},
+          {"impostors", placement.impostors.size()},
+          {"assignments", {{"most_gain", selected.shown.before}, {"fewest", selected.shown.after}}},
           {"rounds", std::move(rounds)}};
 }
 
@@ -69,11 +76,18 @@ json memory_json(const Placement& placement, const ImpostorSet& set) {
           {"atlas_padding_bytes", padding_bytes(set)}};
 }
 
-json bound_json(const SelectionSummary& summary) {
-  const double gap = summary.bytes > 0.0 ? (summary.bytes - summary.lower_bound_bytes) / summary.bytes : 0.0;
+json bound_json(const SelectedImpostors& selected) {
+  const auto gap = [](double bytes, double bound) { return bytes > 0.0 ? (bytes - bound) / bytes : 0.0; };
+  const SelectionSummary& summary = selected.selection.summary;
+  const BoundAsSelected& as_selected = selected.as_selected;
   return {
       {"memory_lower_bound_bytes", summary.lower_bound_bytes},
-      {"gap", gap},
+      {"gap", gap(summary.bytes, summary.lower_bound_bytes)},
+      {"selection_lower_bound_bytes", as_selected.lower_bound_bytes},
+      {"selection_gap", gap(as_selected.bytes, as_selected.lower_bound_bytes)},
+      {"selection_gap_holds_for",
+       "the same at the bytes and drawing times that the selection knew: real where a candidate was baked, estimated where not; how much a "
+       "better choice could save if these are right, while `gap` is proven"},
       {"holds_for",
        "this candidate set, these CPVs and this time bound; bytes are real where a candidate was baked and a proven lower bound where not, "
        "drawing times of those that were not baked are estimates"}};

@@ -15,6 +15,6 @@ namespace standin {
 /// memory, but for what needs the pages themselves (gpu_memory.h).
 [[nodiscard]] nlohmann::json memory_json(const Placement& placement, const ImpostorSet& set);
 /// bound
-[[nodiscard]] nlohmann::json bound_json(const SelectionSummary& summary);
+[[nodiscard]] nlohmann::json bound_json(const SelectedImpostors& selected);
 
 }  // namespace standin

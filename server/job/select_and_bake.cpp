@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
 #include <map>
 #include <optional>
@@ -14,6 +15,10 @@
 
 namespace standin {
 namespace {
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
 
 double page_switches_ms(const TimeModel& model, std::uint32_t pages) {
   return pages * model.milliseconds_per_unit[static_cast<std::size_t>(Term::kTextureSwitches)];
@@ -161,10 +166,19 @@ class Rounds {
   void select(const JobSpec& spec) {
     SelectionConfig config;
     config.reverse_delete = !spec.keep_picks;
+    config.guided_sweeps = spec.guided_sweeps;
     config.exchange_rounds = spec.exchange_rounds;
+    config.recreate_trials = spec.recreate_trials;
     config.bound_iterations = 0;
     config.threads = world_.threads;
+    const auto start = std::chrono::steady_clock::now();
+    if (spec.work_limit_gains > 0) config.most_gains = spec.work_limit_gains;
+    config.gains_before = result_.gains;
+    if (spec.deadline_s > 0.0)
+      config.out_of_time = [start, rest_s = spec.deadline_s - selecting_s_] { return seconds_since(start) >= rest_s; };
     result_.selection = select_impostors(problem_, config, result_.selection.chosen, budget_);
+    selecting_s_ += seconds_since(start);
+    note_limits();
   }
 
   // True when what is selected is baked, and holds, and there is nothing left to try.
@@ -202,12 +216,17 @@ class Rounds {
   SelectedImpostors finish(int bound_iterations) {
     SelectionSummary& summary = result_.selection.summary;
     summary.bytes = baker_.bytes(result_.selection.chosen);
+    const SelectionConfig config{.bound_iterations = bound_iterations, .threads = world_.threads};
     if (bound_iterations > 0) {
-      update({});
-      for (const Shortfall& shortfall : summary.unmet)
-        problem_.deficit[shortfall.cpv] = 0.0;  // as the selection, it spends nothing on them
+      spend_nothing_on_unmet();
+      for (const auto id : result_.selection.chosen) result_.as_selected.bytes += problem_.bytes[id];
+      result_.as_selected.lower_bound_bytes = memory_lower_bound(problem_, result_.as_selected.bytes, config, budget_);
+    }
+    update({});
+    result_.shown = show_fewest(problem_, result_.selection, budget_);
+    if (bound_iterations > 0) {
+      spend_nothing_on_unmet();
       set_least_bytes();
-      const SelectionConfig config{.bound_iterations = bound_iterations, .threads = world_.threads};
       summary.lower_bound_bytes = memory_lower_bound(problem_, summary.bytes, config, budget_);
     }
     collect(result_, baker_);
@@ -216,6 +235,18 @@ class Rounds {
 
  private:
   [[nodiscard]] SelectionBudget limits() const { return {model_.predicted_budget_ms(budget_ms_), result_.page_switch_ms}; }
+
+  void note_limits() {
+    const SelectionSummary& summary = result_.selection.summary;
+    result_.gains += summary.gains;
+    if (summary.cut_short.empty() || (!result_.limits.empty() && result_.limits.back() == summary.message)) return;
+    result_.limits.push_back(summary.message);
+  }
+
+  // A bound spends nothing on them, as the selection does.
+  void spend_nothing_on_unmet() {
+    for (const Shortfall& shortfall : result_.selection.summary.unmet) problem_.deficit[shortfall.cpv] = 0.0;
+  }
 
   // For the certificate: real bytes of what was baked, and no more than any bake could give of the rest.
   void set_least_bytes() {
@@ -287,6 +318,7 @@ class Rounds {
   SelectionProblem problem_;
   std::size_t boldness_ = 0;  // how often caution was given up
   std::size_t bold_rounds_ = 0;
+  double selecting_s_ = 0.0;  // wall seconds of all selections
   SelectedImpostors result_;
 };
 

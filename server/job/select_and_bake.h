@@ -7,10 +7,12 @@
 // deleted again in the end (a third to a half, measured).
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "estimation/time_model.h"
 #include "placement/candidates/candidates.h"
+#include "placement/select/fewest_shown.h"
 #include "placement/select/selection_problem.h"
 #include "placement/view_space/subdivision.h"
 #include "server/job/assemble.h"
@@ -26,6 +28,12 @@ struct BakeRound {
   double real_bytes = 0.0;
 };
 
+/// The bound at the sizes and costs that the last selection was made with: real for what was baked, estimated for the rest.
+struct BoundAsSelected {
+  double bytes = 0.0;  // of the selection, at these sizes
+  double lower_bound_bytes = 0.0;
+};
+
 struct SelectedImpostors {
   Selection selection;                               // of the last round
   std::vector<Impostor> impostors;                   // in the order of selection.chosen
@@ -33,6 +41,10 @@ struct SelectedImpostors {
   std::vector<std::vector<std::uint32_t>> assigned;  // per CPV: indices into `impostors`, ascending
   std::vector<BakeRound> rounds;
   bool only_baked = false;  // the last selection was among what is baked
+  BoundAsSelected as_selected;
+  ShownImpostors shown;             // impostors shown, summed over the regions
+  std::uint64_t gains = 0;          // looked at by all selections
+  std::vector<std::string> limits;  // messages of selections that a limit cut short
   std::uint32_t atlas_pages = 0;
   double page_switch_ms = 0.0;  // all pages, as every region that draws an impostor is charged
 };

@@ -77,7 +77,7 @@ CurvePoint point_of(const Surveyed& job, const Placed& placed, double budget_ms,
     point.texture_bytes += impostor.texture_bytes;
     point.geometry_bytes += impostor.geometry_bytes;
   }
-  const json bound = bound_json(placed.selected.selection.summary);
+  const json bound = bound_json(placed.selected);
   point.lower_bound_bytes = bound["memory_lower_bound_bytes"];
   point.gap = bound["gap"];
   for (const auto& stage : stages_s) point.seconds += stage.get<double>();

@@ -71,6 +71,7 @@ function memorySection({ metrics, impostors }) {
     ...Object.entries(memory.gpu_bytes || {}).map(([format, value]) => [gpuFormat(format, (memory.gpu_compression || {})[format]), bytes(value)]),
     ["lower bound: no choice of these candidates needs less", bytes(bound.memory_lower_bound_bytes)],
     ["gap to the lower bound", percent(bound.gap)],
+    ["gap at the sizes that the selection knew", percent(bound.selection_gap)],
   ].filter(([, value]) => value !== NONE);
   const totals = table([{ title: "memory", text: (row) => row[0] }, { title: "", number: true, text: (row) => row[1] }], rows, "Memory");
   return section("memory", "Memory, and where it goes", "", totals, memoryBreakdown(impostors), largestImpostors(impostors));

@@ -134,6 +134,15 @@ TEST(SelectorLaws, PlainGreedy) {
 TEST(SelectorLaws, Exchange) {
   EXPECT_EQ(kept_by(150, random_problems({}), {.exchange_rounds = 10}), 150U);
 }
+TEST(SelectorLaws, SecondGreedyAtPrices) {
+  EXPECT_EQ(kept_by(150, random_problems({}), {.guided_sweeps = 4}), 150U);
+  EXPECT_EQ(kept_by(100, random_problems({.stages = 3, .negative = 0.4, .demand = 7.0}), {.guided_sweeps = 4}), 100U);
+}
+TEST(SelectorLaws, RuinAndRecreate) {
+  EXPECT_EQ(kept_by(150, random_problems({}), {.recreate_trials = 30}), 150U);
+  EXPECT_EQ(kept_by(150, random_problems({.ties = true}), {.recreate_trials = 30}), 150U);
+  EXPECT_EQ(kept_by(150, factored_problems({}), {.guided_sweeps = 4, .recreate_trials = 30}), 150U);
+}
 TEST(SelectorLaws, FactoredGains) {
   EXPECT_EQ(kept_by(250, factored_problems({})), 250U);
 }
@@ -148,6 +157,20 @@ TEST(SelectorLaws, ExchangeNeverCosts) {
     const auto with = select_impostors(problem, {.exchange_rounds = 5}, {}, {});
     EXPECT_LE(with.summary.bytes, without.summary.bytes) << "seed " << seed;
   }
+}
+
+TEST(SelectorLaws, RecreatingNeverCostsAndOftenPays) {
+  int cheaper = 0;
+  for (std::uint64_t seed = 1; seed <= 100; ++seed) {
+    const auto problem = random_factored_problem(seed, {.nodes = 15, .candidates = 60, .cells = 8, .cpvs_per_cell = 3, .demand = 25.0});
+    const auto without = select_impostors(problem, {.bound_iterations = 0}, {}, {});
+    const auto guided = select_impostors(problem, {.guided_sweeps = 4, .bound_iterations = 0}, {}, {});
+    const auto with = select_impostors(problem, {.guided_sweeps = 4, .recreate_trials = 200, .bound_iterations = 0}, {}, {});
+    EXPECT_LE(guided.summary.bytes, without.summary.bytes) << "seed " << seed;
+    EXPECT_LE(with.summary.bytes, guided.summary.bytes) << "seed " << seed;
+    cheaper += with.summary.bytes < without.summary.bytes ? 1 : 0;
+  }
+  EXPECT_GT(cheaper, 50);
 }
 
 TEST(SelectorLaws, FactoredAndExplicitGainsAreTheSameProblem) {
@@ -167,8 +190,8 @@ TEST(SelectorLaws, FactoredAndExplicitGainsAreTheSameProblem) {
 TEST(SelectorLaws, ThreadsDoNotMatter) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     const auto problem = random_factored_problem(seed, {.nodes = 40, .candidates = 9000, .cells = 30, .demand = 60.0});
-    const auto one = select_impostors(problem, {.bound_iterations = 10}, {}, {});
-    const auto four = select_impostors(problem, {.bound_iterations = 10, .threads = 4}, {}, {});
+    const auto one = select_impostors(problem, {.guided_sweeps = 2, .recreate_trials = 10, .bound_iterations = 10}, {}, {});
+    const auto four = select_impostors(problem, {.guided_sweeps = 2, .recreate_trials = 10, .bound_iterations = 10, .threads = 4}, {}, {});
     EXPECT_EQ(one.chosen, four.chosen) << "seed " << seed;
     EXPECT_EQ(one.summary.evaluations, four.summary.evaluations);
     EXPECT_EQ(one.summary.lower_bound_bytes, four.summary.lower_bound_bytes);
