@@ -10,6 +10,7 @@
 #include <span>
 
 #include "render/base/parallel.h"
+#include "render/scene/import.h"
 #include "render/scene/simplify_mesh.h"
 #include "render/scene/surface_deviation.h"
 
@@ -19,8 +20,8 @@ namespace {
 // A level of an object must save this share of the next finer one's triangles.
 constexpr double kLeastSaving = 0.2;
 // Accuracy of the error of levels whose author says nothing about it.
-constexpr std::uint64_t kAuthoredPieces = 200; // per triangle
-constexpr double kAuthoredSlack = 1e-4;        // of the object's diagonal
+constexpr std::uint64_t kAuthoredPieces = 200;  // per triangle
+constexpr double kAuthoredSlack = 1e-4;         // of the object's diagonal
 
 using Range = std::pair<std::uint32_t, std::uint32_t>;
 
@@ -126,6 +127,7 @@ class LevelMaker {
     std::vector<std::vector<SimplifiedMesh>> simple(meshes.size());
     parallel_for(meshes.size(), options_.threads, budget_, [&](std::size_t i) {
       SimplifyOptions options;
+      options.measure = options_.measure;
       options.lock_border = meets_another(scene_.meshes[meshes[i]], shared);
       simple[i] = simplified(scene_.meshes[meshes[i]], options);
     });
@@ -137,6 +139,7 @@ class LevelMaker {
     for (SimplifiedMesh& one : simple) {
       summary_.pieces += one.pieces;
       mesh_levels_[mesh].push_back({static_cast<std::uint32_t>(scene_.meshes.size()), one.error_m});
+      one.mesh.simplified_from = static_cast<std::int32_t>(mesh);
       scene_.meshes.push_back(std::move(one.mesh));
     }
   }
@@ -241,6 +244,73 @@ class LevelMaker {
 };
 
 }  // namespace
+
+namespace {
+
+bool is_simplified(const Scene& scene, const ObjectLevel& level) {
+  for (std::uint32_t p = level.first_part; p < level.first_part + level.part_count; ++p)
+    if (scene.meshes[scene.parts[p].mesh].simplified_from >= 0) return true;
+  return false;
+}
+
+}  // namespace
+
+void remove_simplified_levels(Scene& scene) {
+  std::size_t parts = scene.parts.size();
+  for (Object& object : scene.objects)
+    std::erase_if(object.levels, [&](const ObjectLevel& level) {
+      if (!is_simplified(scene, level)) return false;
+      parts = std::min<std::size_t>(parts, level.first_part);
+      return true;
+    });
+  scene.parts.resize(parts);
+  while (!scene.meshes.empty() && scene.meshes.back().simplified_from >= 0) scene.meshes.pop_back();
+}
+
+void remove_all_levels(Scene& scene) {
+  remove_simplified_levels(scene);
+  for (Object& object : scene.objects) object.levels.clear();
+}
+
+LevelNumbers number_levels(const Scene& scene) {
+  LevelNumbers numbers;
+  for (const Object& object : scene.objects)
+    for (const ObjectLevel& level : object.levels)
+      numbers.try_emplace({level.first_part, level.part_count}, static_cast<std::uint32_t>(numbers.size()));
+  return numbers;
+}
+
+Scene scene_of_levels(const Scene& scene) {
+  const LevelNumbers numbers = number_levels(scene);
+  Scene result;
+  result.materials = scene.materials;
+  result.textures = scene.textures;
+  result.objects.resize(numbers.size());
+  std::map<std::uint32_t, std::uint32_t> meshes;
+  for (const auto& [range, number] : numbers) {
+    Object& object = result.objects[number];
+    object.name = "lod_" + std::to_string(number);
+    object.first_part = static_cast<std::uint32_t>(result.parts.size());
+    object.part_count = range.second;
+    for (std::uint32_t p = range.first; p < range.first + range.second; ++p) {
+      const auto [place, fresh] = meshes.try_emplace(scene.parts[p].mesh, static_cast<std::uint32_t>(result.meshes.size()));
+      if (fresh) result.meshes.emplace_back(scene.meshes[scene.parts[p].mesh]).simplified_from = -1;
+      result.parts.push_back({place->second, scene.parts[p].material});
+    }
+  }
+  prune(result);
+  return result;
+}
+
+std::vector<std::uint8_t> levels_from(const Scene& scene, std::span<const std::uint32_t> objects, const Box& cell) {
+  std::vector<std::uint8_t> levels;
+  bool any = false;
+  for (const std::uint32_t object : objects) {
+    levels.push_back(static_cast<std::uint8_t>(level_from(scene.objects[object], cell)));
+    any = any || levels.back() > 0;
+  }
+  return any ? levels : std::vector<std::uint8_t>();
+}
 
 LevelSummary add_object_levels(Scene& scene, const LevelOptions& options, const WorkBudget& budget) {
   return LevelMaker(scene, options, budget).run();

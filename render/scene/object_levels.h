@@ -9,7 +9,9 @@
 #pragma once
 
 #include <cstdint>
-#include <string>
+#include <map>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include "render/base/work.h"
@@ -22,6 +24,7 @@ struct LevelOptions {
   double error_m_per_m = 0.0;         // that may be seen, per metre of distance from the eye
   double whole_image_distance = 0.0;  // in radii: from there a sphere's disc has the area of the image
   int threads = 1;
+  bool measure = true;  // false: take meshoptimizer's word for errors, to see quickly whether levels are worth it
 };
 
 struct LevelSummary {
@@ -33,6 +36,15 @@ struct LevelSummary {
 
 /// Fills in Object::levels, adding meshes and parts. The same for any number of threads.
 LevelSummary add_object_levels(Scene& scene, const LevelOptions& options, const WorkBudget& budget);
+/// Takes away what add_object_levels() made, or also the file's own levels.
+void remove_simplified_levels(Scene& scene);
+void remove_all_levels(Scene& scene);
+
+/// Numbers of all levels, as their (first part, number of parts): instances share them.
+using LevelNumbers = std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t>;
+[[nodiscard]] LevelNumbers number_levels(const Scene& scene);
+/// One object for each level, by number, named lod_0, lod_1 ..., untransformed: what ships beside the scene.
+[[nodiscard]] Scene scene_of_levels(const Scene& scene);
 
 /// The coarsest level that may be shown to eyes no nearer to the object's bounds than `distance_m`.
 [[nodiscard]] inline std::uint32_t level_at(const Object& object, double distance_m) {
@@ -40,6 +52,14 @@ LevelSummary add_object_levels(Scene& scene, const LevelOptions& options, const 
   while (level < object.levels.size() && object.levels[level].least_distance_m <= distance_m) ++level;
   return level;
 }
+
+/// The level that a cell's frames show.
+[[nodiscard]] inline std::uint32_t level_from(const Object& object, const Box& cell) {
+  return object.levels.empty() ? 0 : level_at(object, distance(cell, object.bounds));
+}
+
+/// Of each of `objects`; empty where all show their own parts.
+[[nodiscard]] std::vector<std::uint8_t> levels_from(const Scene& scene, std::span<const std::uint32_t> objects, const Box& cell);
 
 /// What a level draws.
 struct LevelParts {

@@ -8,6 +8,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -44,6 +45,7 @@ struct Mesh {
   std::vector<std::uint32_t> indices;  // 3 per triangle
   Box bounds;                          // of positions, in mesh space
   double area_m2 = 0.0;                // sum of the triangles' areas, in mesh space
+  std::int32_t simplified_from = -1;   // the mesh of the scene that this one stands in for (object_levels.h), -1: none
   [[nodiscard]] std::size_t triangle_count() const { return indices.size() / 3; }
 };
 
@@ -59,7 +61,7 @@ struct ObjectLevel {
   std::uint64_t triangle_count = 0;
   double error_m = -1.0;          // world: how far its surface may lie from the object's own; negative: the scene's author vouches for it
   double screen_coverage = -1.0;  // at which the author switches to it; negative: not said
-  double least_distance_m = 0.0;  // for one camera (object_levels.h)
+  double least_distance_m = std::numeric_limits<double>::infinity();  // for one camera (object_levels.h); before: never
 };
 
 struct Object {

@@ -51,14 +51,21 @@ Joined join(const Mesh& mesh) {
   return joined;
 }
 
-std::vector<std::uint32_t> collapsed(const Joined& joined, double error_m, bool lock_border) {
+struct Collapsed {
+  std::vector<std::uint32_t> indices;
+  double estimated_error_m = 0.0;
+};
+
+Collapsed collapsed(const Joined& joined, double error_m, bool lock_border) {
   const float* positions = &joined.positions[0].x;
   const float scale = meshopt_simplifyScale(positions, joined.positions.size(), sizeof(glm::vec3));
-  std::vector<std::uint32_t> result(joined.indices.size());
-  const std::size_t count =
-      meshopt_simplify(result.data(), joined.indices.data(), joined.indices.size(), positions, joined.positions.size(), sizeof(glm::vec3),
-                       0, static_cast<float>(error_m) / scale, lock_border ? static_cast<unsigned int>(meshopt_SimplifyLockBorder) : 0U);
-  result.resize(count);
+  const unsigned int options = lock_border ? static_cast<unsigned int>(meshopt_SimplifyLockBorder) : 0U;
+  Collapsed result{std::vector<std::uint32_t>(joined.indices.size()), 0.0};
+  float relative = 0.0F;
+  result.indices.resize(meshopt_simplify(result.indices.data(), joined.indices.data(), joined.indices.size(), positions,
+                                         joined.positions.size(), sizeof(glm::vec3), 0, static_cast<float>(error_m) / scale, options,
+                                         &relative));
+  result.estimated_error_m = static_cast<double>(relative * scale);
   return result;
 }
 
@@ -152,27 +159,48 @@ void drop_dominated(std::vector<SimplifiedMesh>& levels) {
   levels.assign(std::make_move_iterator(kept.rbegin()), std::make_move_iterator(kept.rend()));
 }
 
+/// The original, to hold its simpler forms against.
+class Original {
+ public:
+  explicit Original(const Mesh& mesh)
+      : mesh_(mesh), joined_(join(mesh)), points_(points_of(mesh, joined_)), surface_(points_, joined_.indices) {}
+
+  [[nodiscard]] const Joined& joined() const { return joined_; }
+
+  [[nodiscard]] SimplifiedMesh estimated(const Collapsed& simple) const {
+    return {mesh_of(mesh_, joined_, simple.indices), simple.estimated_error_m, simple.estimated_error_m, 0};
+  }
+  [[nodiscard]] SimplifiedMesh measured(const Collapsed& simple, double absolute_m, double pieces_per_triangle) const {
+    const JoinedSurface surface(points_, simple.indices);
+    const Deviation there = surface_.deviation_from(surface, absolute_m, pieces_per_triangle);
+    const Deviation back = surface.deviation_from(surface_, absolute_m, pieces_per_triangle);
+    return {mesh_of(mesh_, joined_, simple.indices), std::max(there.bound_m, back.bound_m), std::max(there.found_m, back.found_m),
+            there.pieces + back.pieces};
+  }
+
+ private:
+  const Mesh& mesh_;
+  Joined joined_;
+  std::vector<SurfacePoint> points_;
+  JoinedSurface surface_;
+};
+
 }  // namespace
 
 std::vector<SimplifiedMesh> simplified(const Mesh& mesh, const SimplifyOptions& options) {
   std::vector<SimplifiedMesh> levels;
   if (mesh.triangle_count() < kFewestTriangles) return levels;
-  const Joined joined = join(mesh);
-  if (joined.indices.empty()) return levels;
-  const std::vector<SurfacePoint> points = points_of(mesh, joined);
-  const JoinedSurface original(points, joined.indices);
+  const Original original(mesh);
+  if (original.joined().indices.empty()) return levels;
   std::size_t fewest = mesh.triangle_count();
   for (int k = kFinest; k >= kCoarsest; --k) {
     const double aim_m = mesh.bounds.diagonal() * std::ldexp(1.0, -k);
-    const std::vector<std::uint32_t> indices = collapsed(joined, aim_m, options.lock_border);
-    if (indices.empty()) break;
-    if (static_cast<double>(indices.size() / 3) > (1.0 - options.least_saving) * static_cast<double>(fewest)) continue;
-    fewest = indices.size() / 3;
-    const JoinedSurface simple(points, indices);
-    const Deviation there = original.deviation_from(simple, kSlack * aim_m, options.pieces_per_triangle);
-    const Deviation back = simple.deviation_from(original, kSlack * aim_m, options.pieces_per_triangle);
-    levels.push_back({mesh_of(mesh, joined, indices), std::max(there.bound_m, back.bound_m), std::max(there.found_m, back.found_m),
-                      there.pieces + back.pieces});
+    const Collapsed simple = collapsed(original.joined(), aim_m, options.lock_border);
+    const std::size_t triangles = simple.indices.size() / 3;
+    if (triangles == 0) break;
+    if (static_cast<double>(triangles) > (1.0 - options.least_saving) * static_cast<double>(fewest)) continue;
+    fewest = triangles;
+    levels.push_back(options.measure ? original.measured(simple, kSlack * aim_m, options.pieces_per_triangle) : original.estimated(simple));
   }
   drop_dominated(levels);
   return levels;

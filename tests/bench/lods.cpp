@@ -53,6 +53,9 @@ void print_kinds(const Scene& scene) {
   }
 }
 
+// Errors below this share of a mesh's diagonal are none.
+constexpr double kNothing = 1e-4;
+
 // Bound over what was found, by the work that a triangle may take.
 void print_bounds(const Scene& scene, std::size_t mesh_count) {
   std::printf("| pieces per triangle, at most | seconds | pieces | bound / found: median | 90 %% | most |\n|---|---|---|---|---|---|\n");
@@ -65,7 +68,7 @@ void print_bounds(const Scene& scene, std::size_t mesh_count) {
     for (std::size_t m = 0; m < mesh_count; ++m)
       for (const SimplifiedMesh& level : simplified(scene.meshes[m], options)) {
         pieces += level.pieces;
-        if (level.error_found_m > 0.0) ratios.push_back(level.error_m / level.error_found_m);
+        ratios.push_back(level.error_m / std::max(level.error_found_m, kNothing * scene.meshes[m].bounds.diagonal()));
       }
     const double seconds = seconds_since(start);
     std::sort(ratios.begin(), ratios.end());
