@@ -90,7 +90,7 @@ PixelKind pixel_kind(const Scene& scene, const Part& part) {
 FeatureTable::FeatureTable(const Scene& scene, const Camera& camera)
     : scene_(&scene), camera_(camera), most_passed_pixels_(kOverdraw * camera.width * camera.height) {
   samples_.reserve(scene.meshes.size());
-  for (const Mesh& mesh : scene.meshes) samples_.push_back(sample_surface(mesh, kSamplesPerMesh));
+  for (const Mesh& mesh : scene.meshes) samples_.push_back(samples_of(mesh));
   shapes_.reserve(scene.objects.size());
   for (const Object& object : scene.objects) shapes_.push_back(shape_of(object));
   for (std::size_t kind = 0; kind < kPixelKindCount; ++kind)
@@ -99,23 +99,35 @@ FeatureTable::FeatureTable(const Scene& scene, const Camera& camera)
       pixel_terms_.push_back(kPixelTerm[kind]);
 }
 
+// Simpler forms of a mesh follow each other in the scene, from fine to coarse.
+SurfaceSamples FeatureTable::samples_of(const Mesh& mesh) const {
+  if (mesh.simplified_from < 0) return sample_surface(mesh, kSamplesPerMesh);
+  const std::size_t before = samples_.size() - 1;
+  const bool first = scene_->meshes[before].simplified_from != mesh.simplified_from;
+  return simplified_samples(samples_[first ? static_cast<std::size_t>(mesh.simplified_from) : before], mesh);
+}
+
 FeatureTable::ObjectShape FeatureTable::shape_of(const Object& object) const {
   ObjectShape shape;
   shape.radius_m = 0.5 * object.bounds.diagonal();
-  for (std::uint32_t p = object.first_part; p < object.first_part + object.part_count; ++p) {
-    shape.counts[Term::kDraws] += 1.0;
-    shape.counts[Term::kTriangles] += static_cast<double>(scene_->meshes[scene_->parts[p].mesh].triangle_count());
+  for (std::uint32_t level = 0; level <= object.levels.size(); ++level) {
+    const LevelParts parts = parts_of(object, level);
+    Features& counts = shape.counts.emplace_back();
+    counts[Term::kDraws] = parts.part_count;
+    for (std::uint32_t p = parts.first_part; p < parts.first_part + parts.part_count; ++p)
+      counts[Term::kTriangles] += static_cast<double>(scene_->meshes[scene_->parts[p].mesh].triangle_count());
   }
   return shape;
 }
 
-void FeatureTable::add(std::uint32_t object, const PreparedView& view, Features& sum, ScreenCoverage& coverage) const {
+void FeatureTable::add(std::uint32_t object, std::uint32_t level, const PreparedView& view, Features& sum, ScreenCoverage& coverage) const {
   const Object& drawn = scene_->objects[object];
   if (!may_intersect(view.frustum, drawn.bounds)) return;
-  sum += shapes_[object].counts;
+  sum += shapes_[object].counts[level];
+  const LevelParts parts = parts_of(drawn, level);
   const PlacedMesh mesh(drawn.world_from_object, view.eye_from_world, view.position);
   const bool near = distance(view.position, drawn.bounds) < shapes_[object].radius_m;
-  for (std::uint32_t p = drawn.first_part; p < drawn.first_part + drawn.part_count; ++p) {
+  for (std::uint32_t p = parts.first_part; p < parts.first_part + parts.part_count; ++p) {
     const Part& part = scene_->parts[p];
     const SurfaceSamples& samples = samples_[part.mesh];
     ImageSum image{camera_, Projection(camera_), coverage, {}};
@@ -126,12 +138,16 @@ void FeatureTable::add(std::uint32_t object, const PreparedView& view, Features&
   }
 }
 
-Features FeatureTable::estimate(std::uint32_t object, const PreparedView& view) const {
+Features FeatureTable::estimate(std::uint32_t object, const PreparedView& view, std::uint32_t level) const {
   Features features;
   ScreenCoverage coverage(camera_);
-  add(object, view, features, coverage);
+  add(object, level, view, features, coverage);
   add_passed(coverage, features);
   return features;
+}
+
+const Features& FeatureTable::counts_from(std::uint32_t object, const Box& eyes) const {
+  return shapes_[object].counts[level_from(scene_->objects[object], eyes)];
 }
 
 template <class Visit>
@@ -140,7 +156,8 @@ void FeatureTable::for_each_part(std::uint32_t object, const Box& eyes, Visit&& 
   const Object& drawn = scene_->objects[object];
   const PlacedMesh mesh(drawn.world_from_object, Mat3(1.0), Vec3(0.0));
   const bool maybe_near = distance(eyes, drawn.bounds) < shapes_[object].radius_m;
-  for (std::uint32_t p = drawn.first_part; p < drawn.first_part + drawn.part_count; ++p) {
+  const LevelParts parts = parts_of(drawn, level_from(drawn, eyes));
+  for (std::uint32_t p = parts.first_part; p < parts.first_part + parts.part_count; ++p) {
     const Part& part = scene_->parts[p];
     visit(samples_[part.mesh], mesh, style_of(*scene_, part), maybe_near);
   }
@@ -148,7 +165,7 @@ void FeatureTable::for_each_part(std::uint32_t object, const Box& eyes, Visit&& 
 
 Features FeatureTable::bound(std::uint32_t object, const Box& eyes) const {
   const ProjectionFromBox projection(camera_, eyes);
-  Features features = shapes_[object].counts;
+  Features features = counts_from(object, eyes);
   for_each_part(object, eyes, [&](const SurfaceSamples& samples, const PlacedMesh& mesh, const PartStyle& style, bool maybe_near) {
     PartSum most = most_from_box(samples.samples, mesh, style, projection);
     if (maybe_near) most = larger(most, most_from_box(samples.near_samples, mesh, style, projection));
@@ -160,7 +177,7 @@ Features FeatureTable::bound(std::uint32_t object, const Box& eyes) const {
 
 ObjectFromBox FeatureTable::from_box(std::uint32_t object, const Box& eyes) const {
   const ProjectionFromBox projection(camera_, eyes);
-  ObjectFromBox result{shapes_[object].counts, {}};
+  ObjectFromBox result{counts_from(object, eyes), {}};
   for_each_part(object, eyes, [&](const SurfaceSamples& samples, const PlacedMesh& mesh, const PartStyle& style, bool maybe_near) {
     const auto blocks = [&](std::span<const SurfaceSample> of) { return facing_blocks(of, mesh, style.double_sided, projection, eyes); };
     result.parts.push_back({style.kind, samples.slenderness, blocks(samples.samples), {}});
@@ -181,11 +198,11 @@ Features FeatureTable::bound(const ObjectFromBox& object, const Gaze& gaze) cons
   return features;
 }
 
-Features FeatureTable::frame(std::span<const std::uint32_t> objects, const View& view) const {
+Features FeatureTable::frame(std::span<const std::uint32_t> objects, const View& view, std::span<const std::uint8_t> levels) const {
   const PreparedView prepared(view, camera_);
   Features sum = frame_features();
   ScreenCoverage coverage(camera_);
-  for (const std::uint32_t object : objects) add(object, prepared, sum, coverage);
+  for (std::size_t i = 0; i < objects.size(); ++i) add(objects[i], levels.empty() ? 0U : levels[i], prepared, sum, coverage);
   add_passed(coverage, sum);
   return sum;
 }

@@ -17,6 +17,7 @@
 #include "estimation/projection.h"
 #include "estimation/screen_coverage.h"
 #include "estimation/surface_samples.h"
+#include "render/scene/object_levels.h"
 
 namespace standin {
 
@@ -29,15 +30,16 @@ class FeatureTable {
   FeatureTable(const Scene& scene, const Camera& camera);
 
   /// Of an object alone in a view; all zero when its bounds miss the frustum. About a microsecond a part, 15 for a part within reach.
-  [[nodiscard]] Features estimate(std::uint32_t object, const PreparedView& view) const;
-  /// Upper bound over all views from `eyes`, in any direction, of what an object adds to a frame. About a microsecond a part, 15 for a part
-  /// that may be within reach.
+  [[nodiscard]] Features estimate(std::uint32_t object, const PreparedView& view, std::uint32_t level = 0) const;
+  /// Upper bound over all views from `eyes`, in any direction, of what an object adds to a frame, at the level of detail that a cell of
+  /// these eyes shows. About a microsecond a part, 15 for a part that may be within reach.
   [[nodiscard]] Features bound(std::uint32_t object, const Box& eyes) const;
   [[nodiscard]] ObjectFromBox from_box(std::uint32_t object, const Box& eyes) const;
   /// As bound(), over the views of one gaze from the same box. About a microsecond a part, 15 for a part that may be within reach.
   [[nodiscard]] Features bound(const ObjectFromBox& object, const Gaze& gaze) const;
-  /// A whole frame: frame_features(), and `objects` as they hide each other. At most the sum of their estimates.
-  [[nodiscard]] Features frame(std::span<const std::uint32_t> objects, const View& view) const;
+  /// A whole frame: frame_features(), and `objects` as they hide each other, each at its level (none given: the objects' own parts). At
+  /// most the sum of their estimates.
+  [[nodiscard]] Features frame(std::span<const std::uint32_t> objects, const View& view, std::span<const std::uint8_t> levels = {}) const;
 
   [[nodiscard]] const Camera& camera() const { return camera_; }
   /// What all pixel terms of a frame's originals together are at most, and which of them the scene has at all.
@@ -46,15 +48,17 @@ class FeatureTable {
 
  private:
   struct ObjectShape {
-    Features counts;        // draws, triangles: the same for every view
-    double radius_m = 0.0;  // of the bounds' sphere; an eye nearer than that needs the near samples
+    std::vector<Features> counts;  // draws, triangles of each level: the same for every view
+    double radius_m = 0.0;         // of the bounds' sphere; an eye nearer than that needs the near samples
   };
 
+  [[nodiscard]] SurfaceSamples samples_of(const Mesh& mesh) const;
   [[nodiscard]] ObjectShape shape_of(const Object& object) const;
   /// visit(samples, mesh in world space, style, whether an eye of the box may be within the object's radius).
   template <class Visit>
   void for_each_part(std::uint32_t object, const Box& eyes, Visit&& visit) const;
-  void add(std::uint32_t object, const PreparedView& view, Features& sum, ScreenCoverage& coverage) const;
+  [[nodiscard]] const Features& counts_from(std::uint32_t object, const Box& eyes) const;
+  void add(std::uint32_t object, std::uint32_t level, const PreparedView& view, Features& sum, ScreenCoverage& coverage) const;
 
   const Scene* scene_;
   Camera camera_;

@@ -29,6 +29,7 @@ Scene only(const Scene& scene, std::uint32_t object) {
   one.objects = {scene.objects[object]};
   one.materials = scene.materials;
   one.objects[0].first_part = 0;
+  one.objects[0].levels.clear();
   for (std::uint32_t p = 0; p < one.objects[0].part_count; ++p) {
     const Part& part = scene.parts[scene.objects[object].first_part + p];
     one.parts.push_back({p, part.material});

@@ -119,4 +119,23 @@ SurfaceSamples sample_surface(const Mesh& mesh, std::uint32_t count) {
   return {draw_samples(mesh, totals, count), draw_samples(mesh, totals, kNearFactor * count), slenderness};
 }
 
+SurfaceSamples simplified_samples(const SurfaceSamples& finer, const Mesh& mesh) {
+  Totals known;
+  for (const SurfaceSample& sample : finer.samples) {
+    known.edges_m += sample.edges_m;
+    known.triangles += sample.triangles;
+  }
+  const Totals totals = totals_of(mesh);
+  const double edges = std::min(1.0, ratio_or_zero(totals.edges_m, known.edges_m));
+  const double triangles = std::min(1.0, ratio_or_zero(totals.triangles, known.triangles));
+  SurfaceSamples result = finer;
+  for (auto* samples : {&result.samples, &result.near_samples})
+    for (SurfaceSample& sample : *samples) {
+      sample.edges_m *= edges;
+      sample.triangles *= triangles;
+    }
+  result.slenderness *= edges / std::sqrt(triangles);
+  return result;
+}
+
 }  // namespace standin

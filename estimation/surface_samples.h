@@ -32,5 +32,9 @@ inline constexpr std::size_t kSampleGroup = 16;
 /// `count` >= 1 samples and kNearFactor times as many near ones, each set adding up to the mesh's area, edges and triangles; none for a
 /// mesh without triangles.
 [[nodiscard]] SurfaceSamples sample_surface(const Mesh& mesh, std::uint32_t count);
+/// Samples of a mesh that is a simpler form of the one that `finer` are of: the same points and areas, since the surface is the same but
+/// for a pixel, shared out among its own triangles and edges, no more than the finer one's. So a coarser level is never bounded above a
+/// finer.
+[[nodiscard]] SurfaceSamples simplified_samples(const SurfaceSamples& finer, const Mesh& mesh);
 
 }  // namespace standin

@@ -115,6 +115,7 @@ JobOutcome run_place(const JobFiles& files, const JobSpec& spec, const WorkBudge
   folder.write(kInputsFile, inputs_json(files));
   folder.write("placement.json", placement.dump());
   folder.write("impostors.glb", placed.glb);
+  if (job.world.lods.used) folder.write("lods.glb", job.world.lods.glb);
   folder.write("metrics.json", metrics.dump(1));
   folder.write("report.html", make_report(metrics, placement, report_pictures(verified, placed.set)));
   folder.commit();

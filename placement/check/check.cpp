@@ -50,6 +50,31 @@ class Checker {
     return findings;
   }
 
+  // Bounds are those of the scene's levels, so what is shown must be these.
+  [[nodiscard]] std::vector<Finding> check_levels() const {
+    std::vector<Finding> findings;
+    const auto report = [&](std::size_t object, const std::string& what) {
+      findings.push_back({Violation::kLevels, static_cast<std::uint32_t>(object), "object " + std::to_string(object) + ": " + what});
+    };
+    std::map<std::uint32_t, const PlacementLevels*> stated;
+    for (const PlacementLevels& levels : placement_.levels) stated[levels.object] = &levels;
+    for (std::uint32_t id = 0; id < input_.scene.objects.size(); ++id) {
+      const auto& own = input_.scene.objects[id].levels;
+      const auto found = stated.find(id);
+      const std::size_t count = found == stated.end() ? 0 : found->second->least_distance_m.size();
+      if (count != own.size()) {
+        report(id, std::to_string(count) + " levels of detail, recomputed " + std::to_string(own.size()));
+        continue;
+      }
+      if (count > 0 && !(found->second->bounds == input_.scene.objects[id].bounds)) report(id, "bounds differ from the scene's");
+      for (std::size_t k = 0; k < count; ++k)
+        if (const double stated_m = found->second->least_distance_m[k]; !agrees(stated_m, own[k].least_distance_m))
+          report(id, "level " + std::to_string(k + 1) + " is shown from " + std::to_string(stated_m) + " m, recomputed " +
+                         std::to_string(own[k].least_distance_m) + " m");
+    }
+    return findings;
+  }
+
   // All findings of one cell: its box, its CPVs, and the regions it should list but does not.
   std::vector<Finding> check_cell(std::uint32_t cell_id, std::uint64_t& regions) const {
     std::vector<Finding> findings;
@@ -197,6 +222,8 @@ const char* violation_name(Violation violation) {
       return "not_enclosed";
     case Violation::kMissingRegion:
       return "missing_region";
+    case Violation::kLevels:
+      return "levels";
     case Violation::kLayerInViewCell:
       break;
   }
@@ -221,6 +248,8 @@ CheckReport check_placement(const CheckInput& input, const Placement& placement,
   }
   report.regions = std::accumulate(regions.begin(), regions.end(), std::uint64_t{0}) + report.cpvs;
   report.findings = checker.check_impostors();
+  const std::vector<Finding> of_levels = checker.check_levels();
+  report.findings.insert(report.findings.end(), of_levels.begin(), of_levels.end());
   for (auto& of_cell : findings) report.findings.insert(report.findings.end(), of_cell.begin(), of_cell.end());
   return report;
 }

@@ -24,13 +24,14 @@ enum class Violation {
   kNotDisjoint,      // two impostors of a CPV stand for the same object
   kNotEnclosed,      // a CPV's cell is not inside its impostor's view cell
   kMissingRegion,    // a leaf region over budget that no CPV lists
+  kLevels,           // an object's levels of detail are not those of the scene, or shown from elsewhere
   kLayerInViewCell,  // an eye in an impostor's view cell may reach one of its layers: it has no bound
 };
 [[nodiscard]] const char* violation_name(Violation violation);
 
 struct Finding {
   Violation violation = Violation::kCellBox;
-  std::uint32_t index = 0;  // CPV; cell for kCellBox and kMissingRegion; impostor for kLayerInViewCell
+  std::uint32_t index = 0;  // CPV; cell for kCellBox and kMissingRegion; impostor for kLayerInViewCell; object for kLevels
   std::string sentence;     // values, place and the violated constraint
 };
 

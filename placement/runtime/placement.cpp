@@ -45,7 +45,37 @@ std::vector<std::uint32_t> without(const std::vector<std::uint32_t>& objects, co
   return rest;
 }
 
+// Both lists ascend. A view outside all cells shows what the scene holds.
+std::vector<std::uint8_t> levels_of(const Placement& placement, const Lookup& lookup, const std::vector<std::uint32_t>& objects) {
+  if (!lookup.cell || placement.levels.empty()) return {};
+  const Box& cell = placement.cells[*lookup.cell].box;
+  std::vector<std::uint8_t> levels;
+  auto known = placement.levels.begin();
+  for (const std::uint32_t object : objects) {
+    while (known != placement.levels.end() && known->object < object) ++known;
+    const bool has_levels = known != placement.levels.end() && known->object == object;
+    levels.push_back(has_levels ? known->level_from(cell) : std::uint8_t{0});
+  }
+  return levels;
+}
+
 }  // namespace
+
+std::uint8_t PlacementLevels::level_from(const Box& cell) const {
+  const double distance_m = distance(cell, bounds);
+  return static_cast<std::uint8_t>(std::ranges::upper_bound(least_distance_m, distance_m) - least_distance_m.begin());
+}
+
+std::vector<PlacementLevels> placement_levels(const Scene& scene) {
+  std::vector<PlacementLevels> all;
+  for (std::uint32_t id = 0; id < scene.objects.size(); ++id) {
+    const Object& object = scene.objects[id];
+    if (object.levels.empty()) continue;
+    all.push_back({id, object.bounds, {}});
+    for (const ObjectLevel& level : object.levels) all.back().least_distance_m.push_back(level.least_distance_m);
+  }
+  return all;
+}
 
 PlacementIndex::PlacementIndex(const Placement& placement) : placement_(&placement), cells_(locate_cells(placement)) {
   for (std::size_t i = 0; i < placement.intervals.size(); ++i) {
@@ -93,7 +123,10 @@ ViewContent content_of(const Placement& placement, const Lookup& lookup, std::ui
     content.objects.resize(object_count);
     std::iota(content.objects.begin(), content.objects.end(), 0U);
   }
-  if (!lookup.cpv) return content;
+  if (!lookup.cpv) {
+    content.levels = levels_of(placement, lookup, content.objects);
+    return content;
+  }
   content.impostors = placement.cpvs[*lookup.cpv].impostors;
   std::vector<std::uint32_t> replaced;
   for (const std::uint32_t impostor : content.impostors) {
@@ -102,6 +135,7 @@ ViewContent content_of(const Placement& placement, const Lookup& lookup, std::ui
   }
   std::sort(replaced.begin(), replaced.end());
   content.objects = without(content.objects, replaced);
+  content.levels = levels_of(placement, lookup, content.objects);
   return content;
 }
 

@@ -10,6 +10,7 @@
 #include "placement/view_space/cell_locator.h"
 #include "placement/view_space/view_space.h"
 #include "render/impostor/impostor.h"
+#include "render/scene/scene.h"
 #include "render/view/direction_interval.h"
 
 namespace standin {
@@ -43,13 +44,25 @@ struct PlacementImpostor {
   double time_bound_ms = 0.0;  // at the nearest point of its view cell
 };
 
+/// From how far an object's simpler forms are shown (render/scene/object_levels.h): by the least distance of a cell from its bounds.
+struct PlacementLevels {
+  std::uint32_t object = 0;
+  Box bounds;
+  std::vector<double> least_distance_m;  // of levels 1, 2 ..., ascending
+  [[nodiscard]] std::uint8_t level_from(const Box& cell) const;
+};
+
+/// Of all objects that have levels.
+[[nodiscard]] std::vector<PlacementLevels> placement_levels(const Scene& scene);
+
 struct Placement {
   std::vector<PlacementCell> cells;          // sorted by key
   std::vector<DirectionInterval> intervals;  // sorted
   std::vector<PlacementCpv> cpvs;            // sorted by (cell, interval)
   std::vector<std::vector<std::uint32_t>> visible_sets;
   std::vector<PlacementImpostor> impostors;
-  Vec3 root_min{0.0};  // of the dyadic grid
+  std::vector<PlacementLevels> levels;  // sorted by object; objects without levels left out
+  Vec3 root_min{0.0};                   // of the dyadic grid
   double root_side_m = 0.0;
 };
 
@@ -80,6 +93,7 @@ class PlacementIndex {
 struct ViewContent {
   std::vector<std::uint32_t> objects;    // ascending
   std::vector<std::uint32_t> impostors;  // ascending
+  std::vector<std::uint8_t> levels;      // of detail of `objects`; empty: all show their own parts
 };
 [[nodiscard]] ViewContent content_of(const Placement& placement, const Lookup& lookup, std::uint32_t object_count);
 

@@ -79,7 +79,8 @@ class Surveyor {
   }
 
   [[nodiscard]] double predict(const View& view, std::uint32_t cell) const {
-    return model_.predicted_ms(features_.frame(visible_from(cell), view));
+    const auto& objects = visible_from(cell);
+    return model_.predicted_ms(features_.frame(objects, view, levels_from(scene_, objects, subdivision_.cells[cell].box)));
   }
 
   [[nodiscard]] SurveyedView survey_view(const View& view, std::uint32_t cell) const { return {view, cell, predict(view, cell)}; }
@@ -160,7 +161,8 @@ class Surveyor {
     const PreparedView prepared(surveyed.view, camera_);
     std::vector<RegionTerm> causes;
     for (const std::uint32_t object : visible_from(surveyed.cell)) {
-      const Cost cost = model_.cost(features_.estimate(object, prepared));
+      const std::uint32_t level = level_from(scene_.objects[object], subdivision_.cells[surveyed.cell].box);
+      const Cost cost = model_.cost(features_.estimate(object, prepared, level));
       if (cost.fixed_ms + cost.pixel_ms > 0.0) causes.push_back({object, cost.fixed_ms + cost.pixel_ms});
     }
     std::stable_sort(causes.begin(), causes.end(),

@@ -37,7 +37,7 @@ struct Renderer::State {
     const Mat4 reversed = with_reversed_depth(clip_from_world);
     BoundState bound(gl, programs);
     frame_buffer.begin();
-    objects.draw(bound, reversed, eye, list.objects);
+    objects.draw(bound, reversed, eye, list.objects, list.levels);
     impostors->draw(bound, reversed, list.impostors);
     gl.Finish();
     return bound.counts;
@@ -45,6 +45,11 @@ struct Renderer::State {
 
   void check_ids(const DrawList& list) const {
     for (const std::uint32_t id : list.objects) check_id("object", id, scene.objects.size());
+    if (!list.levels.empty() && list.levels.size() != list.objects.size())
+      throw Failure(ErrorWord::kInternal, "the draw list has " + std::to_string(list.levels.size()) + " levels for " +
+                                              std::to_string(list.objects.size()) + " objects");
+    for (std::size_t i = 0; i < list.levels.size(); ++i)
+      check_id("level", list.levels[i], scene.objects[list.objects[i]].levels.size() + 1);
     for (const std::uint32_t id : list.impostors) check_id("impostor", id, impostors->count());
   }
 
@@ -53,9 +58,13 @@ struct Renderer::State {
     check_ids(list);
     const Frustum frustum = frustum_of(view, camera);
     visible.objects.clear();
+    visible.levels.clear();
     visible.impostors.clear();
-    for (const std::uint32_t id : list.objects)
-      if (may_intersect(frustum, scene.objects[id].bounds)) visible.objects.push_back(id);
+    for (std::size_t i = 0; i < list.objects.size(); ++i) {
+      if (!may_intersect(frustum, scene.objects[list.objects[i]].bounds)) continue;
+      visible.objects.push_back(list.objects[i]);
+      if (!list.levels.empty()) visible.levels.push_back(list.levels[i]);
+    }
     for (const std::uint32_t id : list.impostors)
       if (const Box& box = impostors->bounds(id); !box.empty() && may_intersect(frustum, box)) visible.impostors.push_back(id);
     return visible;

@@ -24,6 +24,7 @@ inline constexpr glm::vec3 kBackground{0.72F, 0.80F, 0.90F};
 struct DrawList {
   std::vector<std::uint32_t> objects;
   std::vector<std::uint32_t> impostors;
+  std::vector<std::uint8_t> levels = {};  // of detail (object_levels.h), one for each of `objects`; none: the objects' own parts
 };
 
 /// What a frame did, counted on the CPU side; deterministic.

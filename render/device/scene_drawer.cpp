@@ -42,10 +42,17 @@ SceneDrawer::SceneDrawer(const Gl& gl, const Scene& scene)
 
 void SceneDrawer::add_object(const Scene& scene, std::uint32_t id) {
   const Object& object = scene.objects[id];
-  first_piece_.push_back(static_cast<std::uint32_t>(pieces_.size()));
+  first_level_.push_back(static_cast<std::uint32_t>(first_piece_.size()));
   world_from_normal_.push_back(cofactors(object.world_from_object));
-  for (std::uint32_t i = 0; i < object.part_count; ++i) {
-    const Part& part = scene.parts[object.first_part + i];
+  for (std::uint32_t level = 0; level <= object.levels.size(); ++level) {
+    first_piece_.push_back(static_cast<std::uint32_t>(pieces_.size()));
+    add_parts(scene, id, parts_of(object, level));
+  }
+}
+
+void SceneDrawer::add_parts(const Scene& scene, std::uint32_t id, const LevelParts& parts) {
+  for (std::uint32_t i = 0; i < parts.part_count; ++i) {
+    const Part& part = scene.parts[parts.first_part + i];
     const Material& material = scene.materials[part.material];
     const Program program = program_of(material, scene.meshes[part.mesh]);
     if (scene.meshes[part.mesh].indices.empty() || masked_away(material, program)) continue;
@@ -53,7 +60,7 @@ void SceneDrawer::add_object(const Scene& scene, std::uint32_t id) {
                        .mesh = part.mesh,
                        .material = part.material,
                        .program = program,
-                       .culling = culling_of(material, object.world_from_object)});
+                       .culling = culling_of(material, scene.objects[id].world_from_object)});
   }
 }
 
@@ -62,11 +69,12 @@ std::uint32_t SceneDrawer::Piece::state_rank(std::int32_t texture) const {
   return static_cast<std::uint32_t>(program) << 30 | used_texture << 2 | static_cast<std::uint32_t>(culling);
 }
 
-void SceneDrawer::order(const Vec3& eye, std::span<const std::uint32_t> objects) {
+void SceneDrawer::order(const Vec3& eye, std::span<const std::uint32_t> objects, std::span<const std::uint8_t> levels) {
   ordered_.clear();
-  for (const std::uint32_t id : objects) {
-    const double distance_m = glm::distance(eye, scene_.objects[id].bounds.centre());
-    for (std::uint32_t i = first_piece_[id]; i < first_piece_[id + 1]; ++i) {
+  for (std::size_t k = 0; k < objects.size(); ++k) {
+    const double distance_m = glm::distance(eye, scene_.objects[objects[k]].bounds.centre());
+    const std::uint32_t drawn = first_level_[objects[k]] + (levels.empty() ? 0U : levels[k]);
+    for (std::uint32_t i = first_piece_[drawn]; i < first_piece_[drawn + 1]; ++i) {
       const std::uint32_t rank = pieces_[i].state_rank(scene_.materials[pieces_[i].material].texture);
       ordered_.push_back({.key = draw_key(pieces_[i].program == Program::kMasked, distance_m, rank), .distance_m = distance_m, .piece = i});
     }
@@ -85,8 +93,9 @@ void SceneDrawer::draw_piece(BoundState& state, const Mat4& clip_from_world, con
   state.draw(meshes_.range(piece.mesh), glm::translate(clip_from_object, MeshBuffers::origin(scene_.meshes[piece.mesh])));
 }
 
-void SceneDrawer::draw(BoundState& state, const Mat4& clip_from_world, const Vec3& eye, std::span<const std::uint32_t> objects) {
-  order(eye, objects);
+void SceneDrawer::draw(BoundState& state, const Mat4& clip_from_world, const Vec3& eye, std::span<const std::uint32_t> objects,
+                       std::span<const std::uint8_t> levels) {
+  order(eye, objects, levels);
   for (const OrderedDraw& draw : ordered_) draw_piece(state, clip_from_world, pieces_[draw.piece]);
 }
 

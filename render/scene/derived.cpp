@@ -18,12 +18,6 @@ double area_of(const Mesh& mesh, const Mat3& linear) {
   return 0.5 * twice_area;
 }
 
-void update(Mesh& mesh) {
-  mesh.bounds = Box();
-  for (const glm::vec3& position : mesh.positions) mesh.bounds.extend(Vec3(position));
-  mesh.area_m2 = area_of(mesh, Mat3(1.0));
-}
-
 // The factor by which `linear` scales every area, or a negative value if it stretches directions differently.
 double area_scale(const Mat3& linear) {
   const Mat3 gram = glm::transpose(linear) * linear;
@@ -62,8 +56,14 @@ bool is_exhibit(const Scene& scene) {
   return scene.objects.size() == 1 || std::max({size.x, size.y, size.z}) <= 3.0 * std::min({size.x, size.y, size.z});
 }
 
+void update_derived(Mesh& mesh) {
+  mesh.bounds = Box();
+  for (const glm::vec3& position : mesh.positions) mesh.bounds.extend(Vec3(position));
+  mesh.area_m2 = area_of(mesh, Mat3(1.0));
+}
+
 void update_derived(Scene& scene) {
-  for (Mesh& mesh : scene.meshes) update(mesh);
+  for (Mesh& mesh : scene.meshes) update_derived(mesh);
   scene.bounds = Box();
   for (Object& object : scene.objects) {
     update(object, scene);

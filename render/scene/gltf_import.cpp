@@ -15,8 +15,8 @@ namespace {
 using Kind = LoadNote::Kind;
 
 const std::set<std::string> kExtensionsRead{
-    "EXT_mesh_gpu_instancing", "EXT_meshopt_compression", "EXT_texture_webp",     "KHR_materials_pbrSpecularGlossiness",
-    "KHR_materials_unlit",     "KHR_mesh_quantization",   "KHR_texture_transform"};
+    "EXT_mesh_gpu_instancing", "EXT_meshopt_compression", "EXT_texture_webp",      "KHR_materials_pbrSpecularGlossiness",
+    "KHR_materials_unlit",     "KHR_mesh_quantization",   "KHR_texture_transform", "MSFT_lod"};
 
 enum class Mode : std::uint64_t { kTriangles = 4, kStrip = 5, kFan = 6 };
 
@@ -76,6 +76,7 @@ class GltfReader {
     check_uris("buffers");
     check_uris("images");
     note_what_is_not_read();
+    find_lower_levels();
     walk();
   }
 
@@ -107,6 +108,16 @@ class GltfReader {
     add_note(scene_, Kind::kWarning, "animations", file_.count("animations"), "not played");
   }
 
+  // Nodes that MSFT_lod names are drawn in place of others, never beside them, even where a file lists them among the roots.
+  void find_lower_levels() {
+    for (std::size_t i = 0; i < file_.count("nodes"); ++i)
+      if (const Json* lod = extension(file_.item("nodes", i, "nodes"), "MSFT_lod"))
+        for (const std::uint64_t id : index_list(*lod, "ids", "nodes[" + std::to_string(i) + "].MSFT_lod")) lower_levels_.insert(id);
+    for (std::size_t i = 0; i < file_.count("materials"); ++i)
+      if (extension(file_.item("materials", i, "materials"), "MSFT_lod") != nullptr)
+        add_note(scene_, Kind::kWarning, "materials", 1, "their levels of detail are not used, only those of nodes");
+  }
+
   [[nodiscard]] std::vector<std::uint64_t> roots() const {
     const std::uint64_t scene = whole_number(file_.json(), "scene", "the file").value_or(0);
     if (file_.count("scenes") > 0) return index_list(file_.item("scenes", scene, "the file"), "nodes", "scenes");
@@ -128,7 +139,8 @@ class GltfReader {
     std::vector<bool> seen(file_.count("nodes"), false);
     std::vector<std::pair<std::uint64_t, Mat4>> stack;
     const auto push = [&](const std::vector<std::uint64_t>& nodes, const Mat4& file_from_parent) {
-      for (auto node = nodes.rbegin(); node != nodes.rend(); ++node) stack.emplace_back(*node, file_from_parent);
+      for (auto node = nodes.rbegin(); node != nodes.rend(); ++node)
+        if (!lower_levels_.contains(*node)) stack.emplace_back(*node, file_from_parent);
     };
     push(roots(), Mat4(1.0));
     while (!stack.empty()) {
@@ -149,24 +161,52 @@ class GltfReader {
     const PartRange range = parts_of(mesh);
     if (range.count == 0) return;
     const std::string name = text(node, "name", text(file_.item("meshes", mesh, place), "name", "node_" + std::to_string(index)));
+    const std::vector<ObjectLevel> levels = levels_of(node, place);
     const Json* instancing = extension(node, "EXT_mesh_gpu_instancing");
     if (instancing == nullptr) {
-      add_object(name, text(node, "name"), range, file_from_node);
+      add_object(name, text(node, "name"), range, levels, file_from_node);
       return;
     }
     const std::vector<Mat4> instances = node_from_instances(*instancing, place);
     for (std::size_t i = 0; i < instances.size(); ++i) {
-      add_object(name + "[" + std::to_string(i) + "]", text(node, "name"), range, file_from_node * instances[i]);
+      add_object(name + "[" + std::to_string(i) + "]", text(node, "name"), range, levels, file_from_node * instances[i]);
     }
   }
 
-  void add_object(const std::string& name, const std::string& node, const PartRange& range, const Mat4& file_from_object) {
+  // MSFT_lod: coverages are those down to which the node itself, then each lower level, is shown; what is to vanish is drawn all the same.
+  std::vector<ObjectLevel> levels_of(const Json& node, const std::string& place) {
+    const Json* lod = extension(node, "MSFT_lod");
+    if (lod == nullptr) return {};
+    const Json* extras = member(node, "extras");
+    const Json* coverages = extras == nullptr ? nullptr : member(*extras, "MSFT_screencoverage");
+    std::vector<ObjectLevel> levels;
+    const std::vector<std::uint64_t> ids = index_list(*lod, "ids", place + ".MSFT_lod");
+    for (std::size_t i = 0; i < ids.size(); ++i) {
+      const Json& lower = file_.item("nodes", ids[i], place + ".MSFT_lod");
+      const auto mesh = whole_number(lower, "mesh", place + ".MSFT_lod");
+      const PartRange range = mesh ? parts_of(*mesh) : PartRange{};
+      const bool elsewhere = parent_from_node(lower, place) != parent_from_node(node, place) && parent_from_node(lower, place) != Mat4(1.0);
+      if (range.count == 0 || elsewhere || member(lower, "children") != nullptr) {
+        add_note(scene_, Kind::kDropped, "levels of detail", 1, "a lower level's node has no mesh of its own, children or another place");
+        continue;
+      }
+      ObjectLevel level{range.first, range.count};
+      const bool stated = coverages != nullptr && coverages->is_array() && i < coverages->size() && (*coverages)[i].is_number();
+      if (stated) level.screen_coverage = std::max(0.0, (*coverages)[i].get<double>());
+      levels.push_back(level);
+    }
+    return levels;
+  }
+
+  void add_object(const std::string& name, const std::string& node, const PartRange& range, const std::vector<ObjectLevel>& levels,
+                  const Mat4& file_from_object) {
     Object object;
     object.name = name;
     object.gltf_node = node;
     object.world_from_object = file_from_object;
     object.first_part = range.first;
     object.part_count = range.count;
+    object.levels = levels;
     scene_.objects.push_back(std::move(object));
   }
 
@@ -275,6 +315,7 @@ class GltfReader {
   Scene& scene_;
   GltfFile file_;
   GltfMaterials materials_;
+  std::set<std::uint64_t> lower_levels_;                        // nodes
   std::map<std::uint64_t, PartRange> part_ranges_;              // by glTF mesh
   std::map<std::string, std::optional<std::uint32_t>> meshes_;  // by accessors; nothing where no triangle is left
   std::uint64_t read_triangles_ = 0;

@@ -36,7 +36,9 @@ struct LoadOptions {
 /// Throws Failure (kFileMissing, kFileBroken, kUriForbidden, kExtensionUnknown, kSceneEmpty).
 [[nodiscard]] Scene load_scene(const std::filesystem::path& file, const LoadOptions& options = {});
 
-/// Writes `scene` as one GLB: instances stay instances, textures embedded as PNG. Whole or not at all.
+/// `scene` as one GLB: instances stay instances, textures embedded as PNG; levels of detail are not part of it.
+[[nodiscard]] std::string scene_glb(const Scene& scene);
+/// Writes it, whole or not at all.
 void write_scene_glb(const Scene& scene, const std::filesystem::path& file);
 
 }  // namespace standin

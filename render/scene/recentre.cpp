@@ -2,6 +2,7 @@
 
 #include <glm/gtc/matrix_transform.hpp>
 #include <map>
+#include <set>
 #include <tuple>
 
 #include "render/scene/import.h"
@@ -34,6 +35,16 @@ Mesh moved(const Mesh& mesh, const Vec3& origin) {
   return result;
 }
 
+// Levels of an object share its transform, so it stays as it is.
+std::set<Range> ranges_of_levels(const Scene& scene) {
+  std::set<Range> ranges;
+  for (const Object& object : scene.objects) {
+    if (!object.levels.empty()) ranges.emplace(object.first_part, object.part_count);
+    for (const ObjectLevel& level : object.levels) ranges.emplace(level.first_part, level.part_count);
+  }
+  return ranges;
+}
+
 // Marks which of `count` items are used and numbers those anew, in order.
 class Renumbering {
  public:
@@ -60,12 +71,13 @@ class Renumbering {
 }  // namespace
 
 void recentre(Scene& scene) {
+  const std::set<Range> of_levels = ranges_of_levels(scene);
   std::map<Range, Vec3> origins;
   std::map<std::tuple<std::uint32_t, double, double, double>, std::uint32_t> moved_meshes;  // two ranges may share a mesh
   for (Object& object : scene.objects) {
     const Range range{object.first_part, object.part_count};
     const auto [known, fresh] = origins.try_emplace(range, Vec3(0.0));
-    if (fresh) known->second = new_origin(bounds_of(scene, range));
+    if (fresh && !of_levels.contains(range)) known->second = new_origin(bounds_of(scene, range));
     const Vec3 origin = known->second;
     if (origin == Vec3(0.0)) continue;
     object.world_from_object = glm::translate(object.world_from_object, origin);
@@ -84,11 +96,15 @@ void recentre(Scene& scene) {
 void prune(Scene& scene) {
   std::vector<Part> parts;
   std::map<Range, std::uint32_t> new_first;
+  const auto keep = [&](std::uint32_t& first_part, std::uint32_t part_count) {
+    const auto [place, fresh] = new_first.try_emplace({first_part, part_count}, static_cast<std::uint32_t>(parts.size()));
+    const auto first = scene.parts.begin() + first_part;
+    if (fresh) parts.insert(parts.end(), first, first + part_count);
+    first_part = place->second;
+  };
   for (Object& object : scene.objects) {
-    const auto [place, fresh] = new_first.try_emplace({object.first_part, object.part_count}, static_cast<std::uint32_t>(parts.size()));
-    const auto first = scene.parts.begin() + object.first_part;
-    if (fresh) parts.insert(parts.end(), first, first + object.part_count);
-    object.first_part = place->second;
+    keep(object.first_part, object.part_count);
+    for (ObjectLevel& level : object.levels) keep(level.first_part, level.part_count);
   }
   scene.parts = std::move(parts);
   Renumbering meshes(scene.meshes.size());

@@ -8,6 +8,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -44,12 +45,23 @@ struct Mesh {
   std::vector<std::uint32_t> indices;  // 3 per triangle
   Box bounds;                          // of positions, in mesh space
   double area_m2 = 0.0;                // sum of the triangles' areas, in mesh space
+  std::int32_t simplified_from = -1;   // the mesh of the scene that this one stands in for (object_levels.h), -1: none
   [[nodiscard]] std::size_t triangle_count() const { return indices.size() / 3; }
 };
 
 struct Part {
   std::uint32_t mesh = 0;
   std::uint32_t material = 0;
+};
+
+/// A simpler form of an object: parts drawn in place of its own where no eye is nearer to the object's bounds than `least_distance_m`.
+struct ObjectLevel {
+  std::uint32_t first_part = 0;
+  std::uint32_t part_count = 0;
+  std::uint64_t triangle_count = 0;
+  double error_m = -1.0;          // world: how far its surface may lie from the object's own; negative: the scene's author vouches for it
+  double screen_coverage = -1.0;  // at which the author switches to it; negative: not said
+  double least_distance_m = std::numeric_limits<double>::infinity();  // for one camera (object_levels.h); before: never
 };
 
 struct Object {
@@ -60,7 +72,8 @@ struct Object {
   std::uint32_t part_count = 0;
   Box bounds;  // world
   std::uint64_t triangle_count = 0;
-  double area_m2 = 0.0;  // world
+  double area_m2 = 0.0;             // world
+  std::vector<ObjectLevel> levels;  // fewer and fewer triangles, from farther and farther; of a loaded scene: those of the file
 };
 
 /// What loading did to the file, for `standin info` (each entry: what, how many, why).
@@ -94,6 +107,8 @@ struct Scene {
 /// walk about in others.
 [[nodiscard]] bool is_exhibit(const Scene& scene);
 
+/// Recomputes a mesh's bounds and area.
+void update_derived(Mesh& mesh);
 /// Recomputes meshes' bounds and areas and objects' bounds, triangle counts and areas, and the scene's bounds.
 void update_derived(Scene& scene);
 

@@ -78,6 +78,9 @@ class Splitter {
       return;
     }
     add_note(scene_, LoadNote::Kind::kChosen, "objects", 1, "too heavy or too long; split by a kd tree");
+    if (!object.levels.empty())
+      add_note(scene_, LoadNote::Kind::kDropped, "levels of detail", object.levels.size(), "their object was split into pieces");
+    object.levels.clear();
     add_note(scene_, LoadNote::Kind::kChosen, "pieces", found->second.size(), "that split objects became");
     for (std::size_t k = 0; k < found->second.size(); ++k) {
       Object piece = object;

@@ -5,6 +5,7 @@
 #include <array>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <span>
 
 #include "render/base/error.h"
 #include "render/base/staged_file.h"
@@ -27,12 +28,14 @@ class GlbWriter {
  public:
   explicit GlbWriter(const Scene& scene) : scene_(scene) {}
 
-  void write(const std::filesystem::path& file) {
+  /// Calls use(pieces) with the file's bytes in order.
+  template <class Use>
+  void encode(Use&& use) {
     for (const Texture& texture : scene_.textures) add_texture(texture);
     for (const Material& material : scene_.materials) add_material(material);
     for (const Mesh& mesh : scene_.meshes) add_accessors(mesh);
     for (const Object& object : scene_.objects) add_node(object);
-    write_chunks(assembled(), file);
+    use_chunks(assembled(), use);
   }
 
  private:
@@ -148,7 +151,8 @@ class GlbWriter {
     return json;
   }
 
-  void write_chunks(const OrderedJson& json, const std::filesystem::path& file) {
+  template <class Use>
+  void use_chunks(const OrderedJson& json, Use&& use) {
     std::string text = json.dump(-1, ' ', false, OrderedJson::error_handler_t::replace);
     text.resize((text.size() + 3) / 4 * 4, ' ');
     binary_.resize((binary_.size() + 3) / 4 * 4, 0);
@@ -162,7 +166,7 @@ class GlbWriter {
       return std::string_view(reinterpret_cast<const char*>(list.data()), list.size() * sizeof(list[0]));
     };
     const std::array<std::string_view, 4> pieces{bytes(head), bytes(text), bytes(binary_head), bytes(binary_)};
-    write_file(file, pieces);
+    use(std::span<const std::string_view>(pieces));
   }
 
   const Scene& scene_;
@@ -180,8 +184,16 @@ class GlbWriter {
 
 }  // namespace
 
+std::string scene_glb(const Scene& scene) {
+  std::string bytes;
+  GlbWriter(scene).encode([&](std::span<const std::string_view> pieces) {
+    for (const std::string_view piece : pieces) bytes += piece;
+  });
+  return bytes;
+}
+
 void write_scene_glb(const Scene& scene, const std::filesystem::path& file) {
-  GlbWriter(scene).write(file);
+  GlbWriter(scene).encode([&](std::span<const std::string_view> pieces) { write_file(file, pieces); });
 }
 
 }  // namespace standin

@@ -5,11 +5,13 @@
 
 #include "placement/check/check.h"
 #include "render/base/error.h"
+#include "render/base/sha256.h"
 #include "render/base/staged_file.h"
 #include "render/scene/hierarchy.h"
 #include "render/scene/load.h"
 #include "server/command_line/commands.h"
 #include "server/files/placement_json.h"
+#include "server/job/lods.h"
 #include "server/job/metrics.h"
 #include "server/job/target_device.h"
 #include "server/job/world.h"
@@ -53,6 +55,18 @@ void require_same(const std::string& what, const std::string& path, const std::s
   if (is != was) throw Failure(ErrorWord::kFileBroken, what + " " + path + " has SHA-256 " + is + ", the placement was made for " + was);
 }
 
+// Levels are made anew from the scene, so that nothing rests on the shipped file; that it holds these very levels is asked of its bytes.
+void open_levels(const CommandContext& context, OpenedPlacement& opened) {
+  if (opened.file.lods_sha256.empty()) {
+    remove_all_levels(opened.scene);
+    return;
+  }
+  add_object_levels(opened.scene, level_options(opened.file.spec, opened.file.camera, thread_count(context.spec)), context.budget);
+  const fs::path file = fs::path(context.arguments.folder) / "lods.glb";
+  require_same("levels of detail", file.string(), sha256_hex(read_file(file)), opened.file.lods_sha256);
+  require_same("levels of detail", "made anew", sha256_hex(scene_glb(scene_of_levels(opened.scene))), opened.file.lods_sha256);
+}
+
 OpenedPlacement open_placement(const CommandContext& context) {
   const fs::path file = fs::path(context.arguments.folder) / "placement.json";
   OpenedPlacement opened{placement_from_json(read_json(file), file.string()), {}, {}, {}};
@@ -61,6 +75,7 @@ OpenedPlacement open_placement(const CommandContext& context) {
   spec.texture_folders = context.spec.texture_folders;
   opened.scene = load_scene(scene_path, load_options(spec));
   require_same("scene", scene_path, opened.scene.sha256, opened.file.scene_sha256);
+  open_levels(context, opened);
   opened.hierarchy = build_hierarchy(opened.scene);
   const std::string target_path = input_path(context, context.arguments.target, "target");
   opened.target = read_target(target_path);

@@ -1,10 +1,12 @@
 #include "server/files/placement_json.h"
 
+#include <algorithm>
 #include <glm/trigonometric.hpp>
 #include <map>
 #include <tuple>
 
 #include "render/base/error.h"
+#include "render/scene/object_levels.h"
 
 namespace standin {
 namespace {
@@ -239,6 +241,43 @@ PlacementImpostor to_impostor(const json& value) {
   return impostor;
 }
 
+json levels_json(const Object& object, const LevelNumbers& numbers) {
+  json levels = json::array();
+  for (const ObjectLevel& level : object.levels)
+    levels.push_back({{"least_distance", level.least_distance_m},
+                      {"error", level.error_m < 0.0 ? json() : json(level.error_m)},
+                      {"triangles", level.triangle_count},
+                      {"gltf_node", "lod_" + std::to_string(numbers.at({level.first_part, level.part_count}))}});
+  return levels;
+}
+
+// Null where all objects always show what the scene holds.
+json lods_json(const PlacementFile& file, const Scene& scene) {
+  if (file.lods_sha256.empty()) return nullptr;
+  const LevelNumbers numbers = number_levels(scene);
+  json objects = json::array();
+  for (std::size_t id = 0; id < scene.objects.size(); ++id)
+    if (!scene.objects[id].levels.empty()) objects.push_back({{"object", id}, {"levels", levels_json(scene.objects[id], numbers)}});
+  return {{"error_px", file.spec.lods_error_px},
+          {"asset", {{"file", "lods.glb"}, {"sha256", file.lods_sha256}}},
+          {"objects", std::move(objects)}};
+}
+
+void read_lods(const json& lods, const json& objects, PlacementFile& file) {
+  if (lods.is_null()) return;
+  file.lods_sha256 = lods.at("asset").at("sha256");
+  for (const auto& entry : lods.at("objects")) {
+    PlacementLevels levels{entry.at("object"), {}, {}};
+    if (levels.object >= objects.size()) throw Failure(ErrorWord::kFileBroken, "lods.objects names an object that does not exist");
+    levels.bounds = to_box(objects.at(levels.object).at("bounds"));
+    for (const auto& level : entry.at("levels")) levels.least_distance_m.push_back(level.at("least_distance"));
+    const bool in_order = file.placement.levels.empty() || file.placement.levels.back().object < levels.object;
+    if (!in_order || !std::ranges::is_sorted(levels.least_distance_m) || levels.least_distance_m.size() > 255)
+      throw Failure(ErrorWord::kFileBroken, "lods.objects: object " + std::to_string(levels.object) + " or its levels are out of order");
+    file.placement.levels.push_back(std::move(levels));
+  }
+}
+
 // Indices must be in range before anything follows them.
 void check_references(const Placement& placement, std::size_t object_count) {
   const auto require = [](bool ok, const std::string& what) {
@@ -279,6 +318,7 @@ PlacementFile parse(const json& object) {
   for (const auto& entry : object.at("intervals")) placement.intervals.push_back(to_interval(entry));
   for (const auto& entry : object.at("cpvs")) placement.cpvs.push_back(to_cpv(entry));
   for (const auto& entry : object.at("impostors")) placement.impostors.push_back(to_impostor(entry));
+  read_lods(object.at("lods"), object.at("scene").at("objects"), file);
   placement.root_min = file.view_space.root_min;
   placement.root_side_m = file.view_space.root_side_m;
   check_references(placement, object.at("scene").at("objects").size());
@@ -311,6 +351,7 @@ json placement_to_json(const PlacementFile& file, const Scene& scene) {
           {"camera", {{"fov_y_deg", file.spec.fov_y_deg}, {"width", file.camera.width}, {"height", file.camera.height}, {"up", {0, 1, 0}}}},
           {"view_space", view_space_json(file.view_space)},
           {"atlas_pages", file.atlas_pages},
+          {"lods", lods_json(file, scene)},
           {"cells", cells_json(placement)},
           {"faces", faces_json()},
           {"intervals", intervals_json(placement.intervals)},

@@ -24,6 +24,7 @@ struct PlacementFile {
   ViewSpace view_space;
   std::uint32_t atlas_pages = 0;  // a texture switch each, charged to every region that draws an impostor
   Placement placement;
+  std::string lods_sha256;  // of lods.glb; empty where no levels of detail are shown
 };
 
 [[nodiscard]] nlohmann::json placement_to_json(const PlacementFile& file, const Scene& scene);

@@ -142,6 +142,10 @@ std::vector<SpecField> make_fields() {
             "share of a 3D leaf's uniform rays that may see an object outside its visible set, certified at 99 %", between(1e-7, 0.5)),
       field("visibility.rays", "--visibility-rays", &JobSpec::visibility_rays,
             "rays per 3D leaf, at most: where they do not suffice, a higher share is certified", between(1, 1e9)),
+      field("lods.mode", "--lods", &JobSpec::lods, "geometric levels of detail: auto (where they save enough), on or off",
+            one_of({"auto", "on", "off"})),
+      field("lods.error_px", "--lods-error-px", &JobSpec::lods_error_px, "pixels by which a level of detail may move a point of the image",
+            between(0.01, 64.0)),
       field("candidates.apex_deg", "--apex-deg", &JobSpec::apex_deg, "apex angles of shafts in degrees", {{"minItems", 1}}),
       field("candidates.direction_step_deg", "--direction-step-deg", &JobSpec::direction_step_deg, "step of shaft directions in degrees",
             between(1.0, 90.0)),
@@ -186,7 +190,7 @@ std::vector<SpecField> make_fields() {
             "growth of memory at a budget, relative to the baseline's, that a sweep lets pass", between(0.0, 1000.0), false),
       field("seed", "--seed", &JobSpec::seed, "seed of everything random", at_least(0)),
       field("force", "--force", &JobSpec::force, "stages that leave nothing out, also where that cannot change the result",
-            {{"items", {{"type", "string"}, {"enum", {"all", "visibility", "candidates", "bake"}}}}}, false),
+            {{"items", {{"type", "string"}, {"enum", {"all", "visibility", "lods", "candidates", "bake"}}}}}, false),
       field("threads", "--threads", &JobSpec::threads, "threads; 0: one per processor", between(0, 1024), false),
   };
 }

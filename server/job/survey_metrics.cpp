@@ -102,6 +102,7 @@ json common_metrics(const Surveyed& job, const StageClock& clock) {
   return {{"scene", {{"name", world.scene.name}, {"objects", world.scene.objects.size()}, {"triangles", world.scene.triangle_count()}}},
           {"view_space", {{"why", world.view_space.why}, {"boxes", world.view_space.boxes.size()}}},
           {"visibility", visibility_json(world, clock)},
+          {"lods", lods_json(world.lods)},
           {"target",
            {{"id", job.target.id},
             {"coverage", job.target.model.coverage},

@@ -28,7 +28,7 @@ struct Surveyed {
   std::unique_ptr<SearchMemory> searches = std::make_unique<SearchMemory>();  // of all subdivisions so far; reset to free it
 };
 
-/// Stages load, view_space and visibility.
+/// Stages load, view_space, visibility and lods.
 void load_job(const JobFiles& files, const JobSpec& spec, StageClock& clock, const WorkBudget& budget, Surveyed& job);
 
 /// The regions whose predicted bound exceeds the budget. `leaves`: of these leaf cubes, sorted; empty: of all.

@@ -11,6 +11,7 @@
 #include "render/scene/load.h"
 #include "render/visibility/raytracer.h"
 #include "server/job/job_spec.h"
+#include "server/job/lods.h"
 #include "server/job/stage_clock.h"
 
 namespace standin {
@@ -48,11 +49,12 @@ struct World {
   Visibility visibility;   // empty: left out
   double occlusion = 0.0;  // what the probe found, 0..1
   VisibilityFigures visible_sets;
+  LodFigures lods;
   BakeQuality quality;
   int threads = 1;
 };
 
-/// Stages load, view_space and visibility.
+/// Stages load, view_space, visibility and lods.
 void build_world(const std::filesystem::path& scene_file, const JobSpec& spec, StageClock& clock, const WorkBudget& budget, World& world);
 
 }  // namespace standin

@@ -25,7 +25,7 @@ Features FrameEstimator::features(const View& view, const std::vector<std::uint3
 }
 
 double FrameEstimator::predicted_ms(const View& view, const DrawList& list) const {
-  Features frame = table_.frame(list.objects, view);
+  Features frame = table_.frame(list.objects, view, list.levels);
   frame += features(view, list.impostors);
   return model_.predicted_ms(frame);
 }

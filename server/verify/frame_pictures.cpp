@@ -45,8 +45,8 @@ std::vector<std::uint32_t> descending(const std::vector<VerifiedView>& views, co
 
 }  // namespace
 
-PicturePair draw_pair(Renderer& renderer, const View& view, const FramePair& frames) {
-  return {picture(renderer, view, frames.before), picture(renderer, view, frames.after)};
+PicturePair draw_pair(Renderer& renderer, const View& view, const FramePair& frames, DrawList FramePair::*shown) {
+  return {picture(renderer, view, frames.original), picture(renderer, view, frames.*shown)};
 }
 
 PictureError error_of(const PicturePair& pictures) {
@@ -65,7 +65,7 @@ void compare_pairs(std::size_t count, int threads, const WorkBudget& budget, con
 }
 
 ViewPictures take_pictures(Renderer& renderer, std::uint32_t index, const View& view, const FramePair& frames) {
-  ViewPictures pictures{index, opaque(picture(renderer, view, frames.before)), opaque(picture(renderer, view, frames.after)), {}};
+  ViewPictures pictures{index, opaque(picture(renderer, view, frames.original)), opaque(picture(renderer, view, frames.after)), {}};
   pictures.difference = amplified_difference(pictures.original, pictures.with_impostors);
   return pictures;
 }

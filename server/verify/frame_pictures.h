@@ -9,10 +9,11 @@
 
 namespace standin {
 
-/// What a view draws before and after placement.
+/// What a view draws without and with what was placed.
 struct FramePair {
-  DrawList before;  // the visible originals
-  DrawList after;   // what the placement says
+  DrawList original;  // the visible originals
+  DrawList before;    // the same at their levels of detail: without impostors
+  DrawList after;     // what the placement says
 };
 
 /// Of two pictures, over all their pixels, 0..1 (image_error.h).
@@ -26,7 +27,8 @@ struct PicturePair {
   Texture original;
   Texture with_impostors;
 };
-[[nodiscard]] PicturePair draw_pair(Renderer& renderer, const View& view, const FramePair& frames);
+/// Originals beside one of the other two.
+[[nodiscard]] PicturePair draw_pair(Renderer& renderer, const View& view, const FramePair& frames, DrawList FramePair::*shown);
 [[nodiscard]] PictureError error_of(const PicturePair& pictures);
 
 /// draw(i) for each i in 0..count-1, in order in the calling thread, which the device's context belongs to; compare(i, pair), which takes

@@ -58,11 +58,11 @@ std::vector<std::optional<CoveredError>> covered_errors(const Scene& scene, cons
   const auto context = make_context(options.device, camera.width, camera.height);
   Renderer renderer(*context, scene, camera);
   renderer.upload(shipped);
-  const FramePair frames{{shipped.impostors.front().objects, {}}, {{}, {0}}};
+  const FramePair frames{{shipped.impostors.front().objects, {}}, {}, {{}, {0}}};
   std::vector<std::optional<CoveredError>> errors(views.size());
   const auto draw = [&](std::size_t i) {
     budget.report("quality: pictures", static_cast<double>(i) / static_cast<double>(views.size()));
-    return draw_pair(renderer, views[i], frames);
+    return draw_pair(renderer, views[i], frames, &FramePair::after);
   };
   compare_pairs(views.size(), options.threads, budget, draw,
                 [&](std::size_t i, const PicturePair& pictures) { errors[i] = covered_error(pictures); });

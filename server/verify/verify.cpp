@@ -16,7 +16,7 @@ namespace {
 
 DrawList draw_list(const Placement& placement, const Lookup& lookup, const Scene& scene) {
   ViewContent content = content_of(placement, lookup, static_cast<std::uint32_t>(scene.objects.size()));
-  return {std::move(content.objects), std::move(content.impostors)};
+  return {std::move(content.objects), std::move(content.impostors), std::move(content.levels)};
 }
 
 /// A quarter of them at most are the survey's: where it saw the slowest frames, frames must be as slow as it said.
@@ -40,8 +40,9 @@ std::vector<FramePair> look_up(const VerifyInput& input, const WorkBudget& budge
     const Lookup lookup = index.find(view.view.position, view.view.direction);
     view.cell = lookup.cell;
     view.cpv = lookup.cpv;
-    frames.push_back(
-        {draw_list(input.placement, {lookup.cell, std::nullopt}, input.scene), draw_list(input.placement, lookup, input.scene)});
+    DrawList before = draw_list(input.placement, {lookup.cell, std::nullopt}, input.scene);
+    DrawList original{before.objects, {}};
+    frames.push_back({std::move(original), std::move(before), draw_list(input.placement, lookup, input.scene)});
   }
   return frames;
 }
@@ -79,26 +80,53 @@ void time_frames(Renderer& renderer, FrameTimer& timer, std::uint32_t before_cou
   }
 }
 
-/// Only views that draw an impostor are drawn.
+/// The error of those views whose `shown` frames are not the originals, and its mean.
+struct Compared {
+  std::vector<std::size_t> views;
+  std::vector<PictureError> errors;
+  PictureError mean;
+};
+
+template <class Wanted>
+Compared compare_pictures(Renderer& renderer, const std::vector<FramePair>& frames, DrawList FramePair::*shown, const Wanted& wanted,
+                          const std::vector<VerifiedView>& views, int threads, const WorkBudget& budget) {
+  Compared compared;
+  for (std::size_t i = 0; i < views.size(); ++i)
+    if (wanted(frames[i].*shown)) compared.views.push_back(i);
+  const std::size_t count = compared.views.size();
+  compared.errors.resize(count);
+  const auto draw = [&](std::size_t k) {
+    budget.report("verify: pictures", static_cast<double>(k) / static_cast<double>(count));
+    return draw_pair(renderer, views[compared.views[k]].view, frames[compared.views[k]], shown);
+  };
+  compare_pairs(count, threads, budget, draw, [&](std::size_t k, const PicturePair& pictures) { compared.errors[k] = error_of(pictures); });
+  for (const PictureError& error : compared.errors) {
+    compared.mean.mean_error += error.mean_error / static_cast<double>(count);
+    compared.mean.mean_flip += error.mean_flip / static_cast<double>(count);
+  }
+  return compared;
+}
+
+bool shows_levels(const DrawList& list) {
+  return std::ranges::any_of(list.levels, [](std::uint8_t level) { return level > 0; });
+}
+
+/// Of impostors only views that draw one are drawn; of levels of detail, without impostors, those that show one.
 void compare_pictures(Renderer& renderer, const std::vector<FramePair>& frames, int threads, const WorkBudget& budget,
                       VerifyResult& result) {
-  std::vector<std::size_t> compared;
-  for (std::size_t i = 0; i < result.views.size(); ++i)
-    if (!frames[i].after.impostors.empty()) compared.push_back(i);
-  const auto draw = [&](std::size_t k) {
-    budget.report("verify: pictures", static_cast<double>(k) / static_cast<double>(compared.size()));
-    return draw_pair(renderer, result.views[compared[k]].view, frames[compared[k]]);
-  };
-  compare_pairs(compared.size(), threads, budget, draw, [&](std::size_t k, const PicturePair& pictures) {
-    const PictureError error = error_of(pictures);
-    result.views[compared[k]].mean_error = error.mean_error;
-    result.views[compared[k]].mean_flip = error.mean_flip;
-  });
-  if (compared.empty()) result.left_out.emplace_back("image comparison: no sampled view draws an impostor");
-  for (const std::size_t i : compared) {
-    result.mean_error += result.views[i].mean_error / static_cast<double>(compared.size());
-    result.mean_flip += result.views[i].mean_flip / static_cast<double>(compared.size());
+  const auto shows_impostors = [](const DrawList& list) { return !list.impostors.empty(); };
+  const Compared impostors = compare_pictures(renderer, frames, &FramePair::after, shows_impostors, result.views, threads, budget);
+  for (std::size_t k = 0; k < impostors.views.size(); ++k) {
+    result.views[impostors.views[k]].mean_error = impostors.errors[k].mean_error;
+    result.views[impostors.views[k]].mean_flip = impostors.errors[k].mean_flip;
   }
+  if (impostors.views.empty()) result.left_out.emplace_back("image comparison: no sampled view draws an impostor");
+  result.mean_error = impostors.mean.mean_error;
+  result.mean_flip = impostors.mean.mean_flip;
+  const Compared levels = compare_pictures(renderer, frames, &FramePair::before, shows_levels, result.views, threads, budget);
+  if (levels.views.empty()) return;
+  result.lods_mean_error = levels.mean.mean_error;
+  result.lods_mean_flip = levels.mean.mean_flip;
 }
 
 void count_over_budget(double budget_ms, VerifyResult& result) {

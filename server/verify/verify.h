@@ -2,8 +2,9 @@
 // placement/runtime, estimated and measured.
 //
 // Random views and adversarial ones (cell corners, interval borders, the views whose bound the optimizer left closest to the budget, a
-// camera path through the view space, the slowest views that the survey found). "Before" draws the visible originals, "after" what the
-// placement says. Times are measured only where the device is the target's; elsewhere they are left out.
+// camera path through the view space, the slowest views that the survey found). "Before" draws the visible objects at their levels of
+// detail, "after" what the placement says; pictures are held against the originals. Times are measured only where the device is the
+// target's; elsewhere they are left out.
 #pragma once
 
 #include <cstdint>
@@ -70,6 +71,8 @@ struct VerifyResult {
   std::optional<double> worst_before_over_surveyed;  // worst measured frame without impostors, over the survey's worst estimate
   double mean_error = 0.0;                           // mean over views with an impostor in them
   double mean_flip = 0.0;                            // likewise
+  std::optional<double> lods_mean_error;             // of levels of detail alone, without impostors: mean over views that show one
+  std::optional<double> lods_mean_flip;              // likewise
   std::vector<std::string> left_out;                 // what was not measured, and why
 };
 

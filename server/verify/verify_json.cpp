@@ -80,13 +80,18 @@ json image_json(const VerifyResult& result) {
   const bool judged = result.judged_views > 0;
   const double baseless =
       static_cast<double>(result.baseless_pixels) / static_cast<double>(std::max<std::uint64_t>(1, result.shown_pixels));
-  return {{"views", result.judged_views},
-          {"gap_pixels", judged ? json(result.gap_pixels) : json()},
-          {"max_parallax_ratio", judged ? json(result.max_parallax_ratio) : json()},
-          {"baseless_pixel_share", result.shown_pixels > 0 ? json(baseless) : json()},
-          {"silhouette_bloat_px", optional_number(result.silhouette_bloat_px)},
-          {"mean_error", result.mean_error},
-          {"mean_flip", result.mean_flip}};
+  json image = {{"views", result.judged_views},
+                {"gap_pixels", judged ? json(result.gap_pixels) : json()},
+                {"max_parallax_ratio", judged ? json(result.max_parallax_ratio) : json()},
+                {"baseless_pixel_share", result.shown_pixels > 0 ? json(baseless) : json()},
+                {"silhouette_bloat_px", optional_number(result.silhouette_bloat_px)},
+                {"mean_error", result.mean_error},
+                {"mean_flip", result.mean_flip}};
+  if (result.lods_mean_error) {
+    image["lods_mean_error"] = *result.lods_mean_error;
+    image["lods_mean_flip"] = *result.lods_mean_flip;
+  }
+  return image;
 }
 
 }  // namespace standin

@@ -35,6 +35,6 @@ test("survey says how low the budget may go, and place gets there", () => {
 
 test("the result's files are there, and no staged one", () => {
   assert.deepEqual(readdirSync(placed).filter((name) => !name.startsWith(".")).sort(),
-                   ["impostors.glb", "metrics.json", "placement.json", "report.html"]);
+                   ["impostors.glb", ...(resultOf(placed).placement.lods ? ["lods.glb"] : []), "metrics.json", "placement.json", "report.html"]);
   assert.deepEqual(readdirSync(fixture).sort(), ["city.glb", "placed", "survey"]);
 });

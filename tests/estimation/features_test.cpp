@@ -288,6 +288,70 @@ TEST(Bound, IsNeverBelowAnEstimateFromItsBox) {
   EXPECT_GT(seen, 10000);
 }
 
+// Every object at three further levels: half, a quarter, an eighth of its triangles, from ever farther.
+Scene with_levels(Scene scene, Rng& rng) {
+  for (Object& object : scene.objects) {
+    const auto original = scene.parts[object.first_part];
+    double distance_m = 0.0;
+    for (int k = 1; k <= 3; ++k) {
+      Mesh simple = scene.meshes[original.mesh];
+      simple.indices.resize(std::max<std::size_t>(3, (simple.indices.size() >> k) / 3 * 3));
+      simple.simplified_from = static_cast<std::int32_t>(original.mesh);
+      distance_m += std::pow(10.0, rng.uniform(-1.5, 1.0));
+      object.levels.push_back({static_cast<std::uint32_t>(scene.parts.size()), 1, simple.triangle_count(), 0.0, -1.0, distance_m});
+      scene.parts.push_back({static_cast<std::uint32_t>(scene.meshes.size()), original.material});
+      scene.meshes.push_back(std::move(simple));
+    }
+  }
+  update_derived(scene);
+  return scene;
+}
+
+// A cell shows the level that its own box chooses: an estimate at that level is within its bound, and a smaller cell, which may show a
+// coarser level, has no larger one.
+TEST(Bound, WithLevelsOfDetailIsStillNeverBelowAnEstimateAndMonotone) {
+  int simpler = 0;
+  for (std::uint64_t seed = 0; seed < 40; ++seed) {
+    Rng rng(seed, 17);
+    const Scene scene = with_levels(random_scene(rng), rng);
+    const Camera camera;
+    const FeatureTable table(scene, camera);
+    for (int i = 0; i < 200; ++i) {
+      const auto object = static_cast<std::uint32_t>(rng.below(scene.objects.size()));
+      const Box& bounds = scene.objects[object].bounds;
+      const Vec3 eye = bounds.centre() + std::pow(10.0, rng.uniform(-3.0, 2.0)) * random_unit(rng);
+      const View view{eye, glm::normalize(bounds.centre() - eye)};
+      const Box eyes = box_around(eye, rng);
+      const std::uint32_t level = level_from(scene.objects[object], eyes);
+      const Features estimate = table.estimate(object, PreparedView(view, camera), level);
+      const Features from_box = table.bound(object, eyes);
+      const Features from_larger = table.bound(object, larger(eyes, rng));
+      const Features own = table.estimate(object, PreparedView(view, camera));
+      simpler += level > 0 && estimate[Term::kTriangles] < own[Term::kTriangles] ? 1 : 0;
+      for (std::size_t t = 0; t < kTermCount; ++t) {
+        ASSERT_LE(estimate.value[t], from_box.value[t]) << term_name(static_cast<Term>(t)) << ", seed " << seed << ", view " << i;
+        ASSERT_LE(from_box.value[t], from_larger.value[t] * (1.0 + 1e-12)) << term_name(static_cast<Term>(t)) << ", seed " << seed;
+        ASSERT_LE(estimate.value[t], own.value[t] * (1.0 + 1e-12)) << term_name(static_cast<Term>(t)) << ", seed " << seed;
+      }
+    }
+  }
+  EXPECT_GT(simpler, 1000);
+}
+
+TEST(Features, AFrameShowsEachObjectAtItsLevel) {
+  Rng rng(4);
+  const Scene scene = with_levels(random_scene(rng), rng);
+  const FeatureTable table(scene, kCamera);
+  const std::vector<std::uint32_t> objects = {0, 1, 2, 3};
+  const View view{Vec3(0, 0, 40), Vec3(0, 0, -1)};
+  const Features plain = table.frame(objects, view), simple = table.frame(objects, view, std::vector<std::uint8_t>{3, 0, 1, 2});
+  double triangles = 0.0;
+  for (const auto& [id, level] : {std::pair(0U, 3U), std::pair(1U, 0U), std::pair(2U, 1U), std::pair(3U, 2U)})
+    triangles += table.estimate(id, PreparedView(view, kCamera), level)[Term::kTriangles];
+  EXPECT_EQ(simple[Term::kTriangles], triangles);
+  EXPECT_LT(triangles, plain[Term::kTriangles]);
+}
+
 // Over the views of one region: between an estimate in it and the bound for any direction, and no more for fewer eyes.
 TEST(Bound, OfAGazeLiesBetweenItsViewsAndAnyDirection) {
   int seen = 0, sharper = 0;

@@ -195,6 +195,22 @@ TEST(ContentOf, DrawsImpostorsInsteadOfTheirObjects) {
   EXPECT_THAT(content_of(placement, index.find({7, 7, 7}, {1, 0, 0}), 3).objects, testing::ElementsAre(0, 1, 2));
 }
 
+// Object 2's bounds lie 3 m from the first cell and 2 m from the second.
+TEST(ContentOf, ChoosesLevelsOfDetailByTheCellsDistance) {
+  Placement placement = two_cells();
+  placement.levels = {{2, Box{{4, 0, 0}, {5, 1, 1}}, {2.5, 3.0, 3.5}}, {5, Box{{-9, 0, 0}, {-8, 1, 1}}, {1.0}}};
+  const PlacementIndex index(placement);
+  const ViewContent first = content_of(placement, index.find({0.5, 0.5, 0.5}, {-1, 0, 0}), 6);
+  EXPECT_THAT(first.objects, testing::ElementsAre(0, 2, 4, 5));
+  EXPECT_THAT(first.levels, testing::ElementsAre(0, 2, 0, 1));  // 3.0 m is far enough for its second level
+  const ViewContent replaced = content_of(placement, index.find({0.5, 0.5, 0.5}, {1, 0, 0}), 6);
+  EXPECT_THAT(replaced.objects, testing::ElementsAre(0, 4));
+  EXPECT_THAT(replaced.levels, testing::ElementsAre(0, 0));
+  const ViewContent second = content_of(placement, index.find({1.5, 0.5, 0.5}, {1, 0, 0}), 6);
+  EXPECT_THAT(second.levels, testing::ElementsAre(0, 0, 0, 0, 0, 1));
+  EXPECT_TRUE(content_of(placement, index.find({7, 7, 7}, {1, 0, 0}), 6).levels.empty());
+}
+
 TEST(PlacementIndex, RefusesADisorderedPlacementByWord) {
   const auto word = [](const Placement& placement) {
     try {

@@ -28,6 +28,26 @@ TEST_F(RendererTest, ARectangleCoversExactlyItsPixels) {
   EXPECT_EQ(pixel(image, 0, 0)[3], 0);
 }
 
+// A large rectangle whose second form is a small one.
+TEST_F(RendererTest, AnObjectIsDrawnAtItsLevelOfDetail) {
+  Scene scene;
+  add_object(scene, add_mesh(scene, make_rectangle(-3, -2, 5, 4, -8)), add_material(scene, unlit({1.0F, 0.0F, 0.0F, 1.0F})));
+  const std::uint32_t simple = add_mesh(scene, make_rectangle(-1, -1, 1, 1, -8));
+  scene.objects[0].levels.push_back({static_cast<std::uint32_t>(scene.parts.size()), 1, 2, 0.0, -1.0, 100.0});
+  scene.parts.push_back({simple, scene.parts[0].material});
+  update_derived(scene);
+  Renderer renderer(*context, scene, small_camera());
+  const View ahead{Vec3(0.0), Vec3(0.0, 0.0, -1.0)};
+  renderer.draw(ahead, {{0}, {}});
+  EXPECT_EQ(count_drawn(renderer.read_pixels()), 48);
+  renderer.draw(ahead, {{0}, {}, {1}});
+  EXPECT_EQ(count_drawn(renderer.read_pixels()), 4);
+  renderer.draw(ahead, {{0}, {}, {0}});
+  EXPECT_EQ(count_drawn(renderer.read_pixels()), 48);
+  EXPECT_THROW(renderer.draw(ahead, {{0}, {}, {2}}), Failure);
+  EXPECT_THROW(renderer.draw(ahead, {{0}, {}, {0, 0}}), Failure);
+}
+
 // The plane's normal comes from its transformed corners, not from any matrix of normals.
 TEST_F(RendererTest, ColourFollowsTheShadingRuleUnderAnyTransform) {
   const glm::vec4 colour(0.9F, 0.6F, 0.3F, 1.0F);

@@ -134,6 +134,10 @@ const std::vector<Tampering> kTamperings = {
     {Violation::kNotSolved, kCpv, "not_solved", [](Checked& w) { cpv(w).solved = false; }},
     {Violation::kNotDisjoint, kCpv, "not_disjoint", draw_twice},
     {Violation::kNotEnclosed, kCpv, "not_enclosed", stand_for_the_other_cell},
+    {Violation::kLevels, kTree, "levels",
+     [](Checked& w) {
+       w.placement.levels = {{kTree, w.scene.objects[kTree].bounds, {30.0}}};
+     }},
     {Violation::kMissingRegion, 0, "missing_region", [](Checked& w) { w.placement.cpvs.erase(w.placement.cpvs.begin()); }},
 };
 
@@ -196,6 +200,26 @@ TEST(Check, BoundsAreThoseThatThePlacementWasMadeWith) {
   world.bounds = RegionBounds::kByObject;
   const CheckReport by_object = world.check();
   EXPECT_NE(sentences(by_sample), sentences(by_object));
+}
+
+// The tree at half its triangles from 20 m on: its regions' bounds fall, and what is shown must be as stated.
+TEST(Check, LevelsOfDetailCountAndAreHeldAgainstTheScenes) {
+  Checked world;
+  Object& tree = world.scene.objects[kTree];
+  Mesh simple = world.scene.meshes[world.scene.parts[tree.first_part].mesh];
+  simple.indices.resize(simple.indices.size() / 6 * 3);
+  simple.simplified_from = static_cast<std::int32_t>(world.scene.parts[tree.first_part].mesh);
+  tree.levels.push_back({static_cast<std::uint32_t>(world.scene.parts.size()), 1, simple.triangle_count(), 0.01, -1.0, 20.0});
+  world.scene.parts.push_back({static_cast<std::uint32_t>(world.scene.meshes.size()), world.scene.parts[tree.first_part].material});
+  world.scene.meshes.push_back(std::move(simple));
+  world.placement.levels = placement_levels(world.scene);
+  for (auto& one : world.placement.cpvs) one.bound_before_ms -= 0.5 * kTree_ms;
+  EXPECT_THAT(sentences(world.check()), testing::IsEmpty());
+
+  world.placement.levels[0].least_distance_m[0] = 10.0;
+  EXPECT_THAT(sentences(world.check()), testing::ElementsAre(testing::StartsWith("levels: object 1: level 1 is shown from 10")));
+  world.placement.levels.clear();
+  EXPECT_THAT(sentences(world.check()), testing::ElementsAre(testing::StartsWith("levels: object 1: 0 levels of detail, recomputed 1")));
 }
 
 TEST(Check, FindingsDoNotDependOnThreads) {

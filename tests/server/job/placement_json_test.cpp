@@ -71,6 +71,30 @@ TEST(PlacementJson, RoundTripKeepsEveryValue) {
   EXPECT_EQ(read.placement.visible_sets.size(), 1U);
 }
 
+TEST(PlacementJson, LevelsOfDetailAreStatedByObject) {
+  Scene scene = two_object_scene();
+  scene.objects[1].levels = {{4, 1, 70, 0.125, -1.0, 12.5}, {5, 1, 9, -1.0, 0.1, 1.0 / 3.0 + 20.0}};
+  PlacementFile file = sample_file();
+  file.lods_sha256 = "ef";
+  const json written = placement_to_json(file, scene);
+  EXPECT_EQ(written["lods"]["objects"].size(), 1U);
+  EXPECT_EQ(written["lods"]["objects"][0]["levels"][0]["gltf_node"], "lod_0");
+  EXPECT_EQ(written["lods"]["objects"][0]["levels"][0]["error"], 0.125);
+  EXPECT_TRUE(written["lods"]["objects"][0]["levels"][1]["error"].is_null());
+  const PlacementFile read = placement_from_json(json::parse(written.dump()), "p");
+  EXPECT_EQ(placement_to_json(read, scene), written);
+  ASSERT_EQ(read.placement.levels.size(), 1U);
+  EXPECT_EQ(read.placement.levels[0].object, 1U);
+  EXPECT_EQ(read.placement.levels[0].bounds, scene.objects[1].bounds);
+  EXPECT_EQ(read.placement.levels[0].least_distance_m, (std::vector<double>{12.5, 1.0 / 3.0 + 20.0}));
+  for (const auto& [pointer, value] : std::vector<std::pair<std::string, json>>{
+           {"/lods/objects/0/object", 2}, {"/lods/objects/0/levels/1/least_distance", 3.0}, {"/lods/asset/sha256", 3}}) {
+    json bad = written;
+    bad[json::json_pointer(pointer)] = value;
+    EXPECT_THROW((void)placement_from_json(bad, "p"), Failure) << pointer;
+  }
+}
+
 TEST(PlacementJson, PositionsOfTheViewSpaceReadCanBeSampled) {
   const PlacementFile read = placement_from_json(placement_to_json(sample_file(), two_object_scene()), "p");
   Rng rng(1);
