@@ -57,7 +57,6 @@ std::string too_little(double share) {
 
 /// Says why not, where levels are not worth it.
 std::string give_levels(const JobSpec& spec, World& world, const WorkBudget& budget) {
-  if (spec.lods == "off") return "switched off";
   const LevelOptions options = level_options(spec, world.camera, world.threads);
   const bool asked_for = spec.lods == "on";
   if (!asked_for && !forced(spec, "lods"))
@@ -81,10 +80,11 @@ LevelOptions level_options(const JobSpec& spec, const Camera& camera, int thread
 }
 
 void add_lods(const JobSpec& spec, World& world, StageClock& clock, const WorkBudget& budget) {
+  if (spec.lods == "off") return remove_all_levels(world.scene);
   const std::string why_not = clock.run("lods", [&] { return give_levels(spec, world, budget); });
   if (world.lods.used) return;
   remove_all_levels(world.scene);
-  if (spec.lods == "off" || !forced(spec, "lods")) clock.leave_out("lods", why_not);
+  if (!forced(spec, "lods")) clock.leave_out("lods", why_not);
 }
 
 nlohmann::json lods_json(const LodFigures& figures) {
