@@ -131,7 +131,7 @@ class Selector {
       if (finished) {
         repair();
         result_.summary.bytes_greedy = bytes();
-        reverse_delete(problem_, *cover_, budget_, work_);
+        if (config_.reverse_delete) reverse_delete(problem_, *cover_, budget_, work_);
       }
       result_.summary.guided = finished && bytes() < first_bytes;
       if (!result_.summary.guided) {

@@ -53,9 +53,9 @@ json select_metrics(const SelectedImpostors& selected, const Placement& placemen
                       {"real_bytes", round.real_bytes}});
   const SelectionSummary& summary = selected.selection.summary;
   return {{"message", select_message(selected)},
-          {"picked_by_greedy", summary.picked_by_greedy},
-          {"stalled", summary.stalled},
-          {"evaluations", summary.evaluations},
+          {"picked_by_greedy", selected.picked_by_greedy},
+          {"stalled", selected.stalled},
+          {"evaluations", selected.evaluations},
           {"gains", selected.gains},
           {"limits", selected.limits},
           {"bytes_greedy", summary.bytes_greedy},

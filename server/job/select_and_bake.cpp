@@ -239,6 +239,9 @@ class Rounds {
   void note_limits() {
     const SelectionSummary& summary = result_.selection.summary;
     result_.gains += summary.gains;
+    result_.evaluations += summary.evaluations;
+    result_.picked_by_greedy += summary.picked_by_greedy;
+    result_.stalled += summary.stalled;
     if (summary.cut_short.empty() || (!result_.limits.empty() && result_.limits.back() == summary.message)) return;
     result_.limits.push_back(summary.message);
   }

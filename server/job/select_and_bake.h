@@ -42,8 +42,11 @@ struct SelectedImpostors {
   std::vector<BakeRound> rounds;
   bool only_baked = false;  // the last selection was among what is baked
   BoundAsSelected as_selected;
-  ShownImpostors shown;             // impostors shown, summed over the regions
-  std::uint64_t gains = 0;          // looked at by all selections
+  ShownImpostors shown;     // impostors shown, summed over the regions
+  std::uint64_t gains = 0;  // looked at by all selections, as are the evaluations
+  std::uint64_t evaluations = 0;
+  std::uint64_t picked_by_greedy = 0;  // in all rounds, as those stalled
+  std::uint64_t stalled = 0;
   std::vector<std::string> limits;  // messages of selections that a limit cut short
   std::uint32_t atlas_pages = 0;
   double page_switch_ms = 0.0;  // all pages, as every region that draws an impostor is charged

@@ -92,7 +92,7 @@ TEST(SelectExtremes, ManyRoots) {
 }
 
 // Whatever the steps, what is reachable is met, and no bound exceeds the bytes.
-void check_every_step(const SelectionProblem& problem, std::size_t unmet) {
+void expect_every_step_holds(const SelectionProblem& problem, std::size_t unmet) {
   for (const SelectionConfig& config :
        {SelectionConfig{.bound_iterations = 20},
         SelectionConfig{.guided_sweeps = 4, .exchange_rounds = 1, .recreate_trials = 20, .bound_iterations = 20}}) {
@@ -115,7 +115,7 @@ TEST(SelectExtremes, BytesOverTwelveOrders) {
     rows.push_back({c + 1, std::pow(10.0, 12.0 * c / 7.0), {{c % 4, {1.0}}, {(c + 1) % 4, {1.0}}}});
   }
   const auto problem = make_problem(parent, rows, {2.0, 2.0, 2.0, 2.0});
-  check_every_step(problem, 0);
+  expect_every_step_holds(problem, 0);
   const auto selection = select_impostors(problem, {.bound_iterations = 50}, {}, {});
   EXPECT_EQ(selection.summary.bytes, BruteForce(problem).optimum()->bytes);
   EXPECT_GT(selection.summary.lower_bound_bytes, 0.99 * selection.summary.bytes);
@@ -124,18 +124,18 @@ TEST(SelectExtremes, BytesOverTwelveOrders) {
 TEST(SelectExtremes, DeficitsOverTwentyFourOrdersInEveryStep) {
   const auto problem = make_problem(
       {-1, 0, 0, 0}, {{1, 1.0, {{0, {1e-12}}}}, {2, 1e12, {{1, {1e12}}}}, {3, 1e12, {{0, {1e12}}, {1, {1.0}}}}}, {1e-12, 1e12});
-  check_every_step(problem, 0);
+  expect_every_step_holds(problem, 0);
 }
 
 TEST(SelectExtremes, GainsBelowWhatDoublesTellApart) {
   // A deficit of the smallest normal double, and one that gains cannot add up to for being denormal.
   const double tiny = std::numeric_limits<double>::min();
-  check_every_step(make_problem({-1, 0}, {{1, 1.0, {{0, {tiny}}, {1, {tiny / 4.0}}}}}, {tiny, tiny}), 1);
+  expect_every_step_holds(make_problem({-1, 0}, {{1, 1.0, {{0, {tiny}}, {1, {tiny / 4.0}}}}}, {tiny, tiny}), 1);
 }
 
 TEST(SelectExtremes, OneCpv) {
   const auto problem = make_problem({-1, 0, 0}, {{1, 3.0, {{0, {2.0}}}}, {2, 5.0, {{0, {3.0}}}}, {0, 9.0, {{0, {5.0}}}}}, {4.0});
-  check_every_step(problem, 0);
+  expect_every_step_holds(problem, 0);
   const auto selection = select_impostors(problem, {.guided_sweeps = 4, .recreate_trials = 10}, {}, {});
   EXPECT_EQ(selection.summary.bytes, 8.0);
 }
@@ -148,7 +148,7 @@ TEST(SelectExtremes, OneCandidateServesAll) {
     rows.push_back({0, 1.0, {{p, {1.0}}}});
   }
   const auto problem = make_problem({-1}, rows, std::vector<double>(kCpvs, 1.0));
-  check_every_step(problem, 0);
+  expect_every_step_holds(problem, 0);
   const auto selection = select_impostors(problem, {.bound_iterations = 20}, {}, {});
   EXPECT_EQ(selection.chosen, (Ids{0}));
   EXPECT_GT(selection.summary.lower_bound_bytes, 999.0);
@@ -161,11 +161,11 @@ TEST(SelectExtremes, AllTiedInEveryStep) {
     parent.push_back(0);
     rows.push_back({c + 1, 0.1, {{0, {0.3}}, {1, {0.3}}, {2, {0.0}}}});
   }
-  check_every_step(make_problem(parent, rows, {2.95, 2.95, 1.0}), 1);
+  expect_every_step_holds(make_problem(parent, rows, {2.95, 2.95, 1.0}), 1);
 }
 
 TEST(SelectExtremes, InfeasibleByOneUlpInEveryStep) {
-  check_every_step(make_problem({-1}, {{0, 1.0, {{0, {std::nextafter(0.3, 0.0)}}}}}, {0.3}), 1);
+  expect_every_step_holds(make_problem({-1}, {{0, 1.0, {{0, {std::nextafter(0.3, 0.0)}}}}}, {0.3}), 1);
 }
 
 TEST(SelectExtremes, OneOfAMillionCpvsIsSlow) {
@@ -184,7 +184,7 @@ TEST(SelectExtremes, OneOfAMillionCpvsIsSlow) {
   problem.cost = {0.5, 0.5};
   problem.run_offset = {0, 1, 2};
   problem.runs = {{0, 1}, {0, 1}};
-  check_every_step(problem, 0);
+  expect_every_step_holds(problem, 0);
   const auto selection = select_impostors(problem, {}, {}, {});
   EXPECT_EQ(selection.chosen, (Ids{0}));
   EXPECT_EQ(selection.assigned[777'777], (Ids{0}));
@@ -203,7 +203,7 @@ TEST(SelectExtremes, HierarchyTenThousandDeepInEveryStep) {
     rows.push_back({n, 2.0 * (kDepth - n) + 10.0, {}});
     for (std::uint32_t p = 0; p < kCpvs; ++p) rows.back().gain[p] = {static_cast<double>(kDepth - n)};
   }
-  check_every_step(make_problem(parent, rows, std::vector<double>(kCpvs, static_cast<double>(kDepth - 5))), 0);
+  expect_every_step_holds(make_problem(parent, rows, std::vector<double>(kCpvs, static_cast<double>(kDepth - 5))), 0);
 }
 
 }  // namespace
