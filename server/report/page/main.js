@@ -44,7 +44,7 @@ function memoryTile(metrics) {
 function reachTile(metrics) {
   const survey = metrics.survey || {};
   if (!isNumber(survey.reachable_all_ms)) return null;
-  const note = `99 % of views: ${milliseconds(survey.reachable_p99_ms)}, 90 %: ${milliseconds(survey.reachable_p90_ms)}`;
+  const note = `99 % of views: at most ${milliseconds(survey.reachable_p99_ms)}, 90 %: at most ${milliseconds(survey.reachable_p90_ms)}`;
   return ["Lowest budget for all views", milliseconds(survey.reachable_all_ms), note];
 }
 
