@@ -55,6 +55,7 @@ VerifyResult verify(const Surveyed& job, const Placed& placed, const JobSpec& sp
 }  // namespace
 
 JobOutcome run_survey(const JobFiles& files, const JobSpec& spec, const WorkBudget& budget) {
+  require_bounds("survey", spec);
   std::optional<OutputFolder> folder;
   if (!files.folder.empty()) folder.emplace(files.folder, fingerprint("survey", files, spec));
   StageClock clock(budget);

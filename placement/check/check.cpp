@@ -33,7 +33,7 @@ class Checker {
       : input_(input),
         placement_(placement),
         cell_boxes_(input.view_space),
-        estimator_(input.scene, input.hierarchy_rank, input.model, input.camera, input.interval_deg, input.bounds),
+        estimator_(input.scene, input.hierarchy_rank, input.model, input.camera, input.view_space_options),
         page_switches_ms_(input.atlas_pages * input.model.milliseconds_per_unit[static_cast<std::size_t>(Term::kTextureSwitches)]) {
     everything_.resize(input.scene.objects.size());
     std::iota(everything_.begin(), everything_.end(), 0U);
@@ -82,7 +82,7 @@ class Checker {
     const Box box = cell_boxes_.cell_box(cell.key);
     if (!(box == cell.box))
       findings.push_back({Violation::kCellBox, cell_id, "cell " + std::to_string(cell_id) + ": box differs from the view space's"});
-    CellCosts costs = estimator_.cell_costs(cell_boxes_.chain(cell.key), visible(cell));
+    CellCosts costs = estimator_.cell_costs(cell_boxes_.chain(cell.key), visible(cell), cell_boxes_.parts(cell.key));
     std::set<DirectionInterval> listed;
     if (const auto found = cpvs_of_cell_.find(cell_id); found != cpvs_of_cell_.end()) {
       for (const auto p : found->second) {
@@ -179,10 +179,10 @@ class Checker {
       const auto is_slow = [&](double bound_ms) { return bound_ms > input_.budget_ms * (1.0 + kRelativeTolerance); };
       if (!is_slow(input_.model.bound_ms(estimator_.coarse_bound_ms(costs, interval)))) continue;
       double bound_ms = std::numeric_limits<double>::infinity();
-      if (interval.level >= estimator_.first_sharp_level())
+      if (interval.level >= estimator_.first_sharp_level(costs))
         bound_ms = input_.model.bound_ms(estimator_.region_bound(costs, interval).predicted_ms);
       if (!is_slow(bound_ms)) continue;
-      if (interval.level < estimator_.directions().leaf_level())
+      if (interval.level < estimator_.leaf_level(costs))
         for (int k = 0; k < 4; ++k) pending.push_back(interval.child(k));
       else
         findings.push_back({Violation::kMissingRegion, cell_id,

@@ -41,10 +41,9 @@ struct CheckInput {
   const TimeModel& model;
   const Camera& camera;
   const ViewSpace& view_space;
-  double interval_deg;
+  const ViewSpaceOptions& view_space_options;
   double budget_ms;
   std::uint32_t atlas_pages;  // a texture switch each, charged to every region that draws an impostor
-  RegionBounds bounds = RegionBounds::kBySample;
 };
 
 struct CheckReport {

@@ -29,6 +29,7 @@ class Search {
     std::vector<Node> faces;
     for (int face = 0; face < kFaceCount; ++face) faces.push_back(make_node({static_cast<Face>(face), 0, 0, 0}, all));
     visit(faces);
+    if (estimator_.by_view()) result_.worst_predicted_ms = std::max(result_.worst_predicted_ms, within_budget_ms_);
     std::ranges::sort(result_.hot, {}, &HotRegion::interval);
     result_.terms.shrink_to_fit();
     return std::move(result_);
@@ -46,17 +47,23 @@ class Search {
     return node;
   }
 
-  [[nodiscard]] double threshold_ms() const { return std::min(budget_ms_, result_.worst_predicted_ms); }
+  // By view, what is within the budget is not looked at: bounds prune little above what sampled views take.
+  [[nodiscard]] double threshold_ms() const {
+    return estimator_.by_view() ? budget_ms_ : std::min(budget_ms_, result_.worst_predicted_ms);
+  }
 
   // Highest bound first, so that the worst region is met early and prunes the rest.
   void visit(std::vector<Node>& siblings) {
     std::stable_sort(siblings.begin(), siblings.end(),
                      [](const Node& a, const Node& b) { return a.sums.predicted_ms() > b.sums.predicted_ms(); });
     for (Node& node : siblings) {
-      if (node.sums.predicted_ms() <= threshold_ms()) return;
-      if (node.interval.level == estimator_.directions().leaf_level())
+      if (node.sums.predicted_ms() <= threshold_ms()) {
+        within_budget_ms_ = std::max(within_budget_ms_, node.sums.predicted_ms());
+        return;
+      }
+      if (node.interval.level == estimator_.leaf_level(cell_))
         take_leaf(node);
-      else if (node.interval.level < estimator_.first_sharp_level() || is_above(node))
+      else if (node.interval.level < estimator_.first_sharp_level(cell_) || is_above(node))
         visit_children(node);
     }
   }
@@ -90,6 +97,7 @@ class Search {
   const RegionEstimator& estimator_;
   CellCosts& cell_;
   double budget_ms_;
+  double within_budget_ms_ = 0.0;  // greatest bound of what was pruned by it
   const DirectionSearchResult* looser_;
   DirectionSearchResult result_;
 };

@@ -6,6 +6,7 @@
 #include <ranges>
 #include <string>
 
+#include "placement/view_space/region_sample.h"
 #include "render/base/error.h"
 
 namespace standin {
@@ -13,8 +14,6 @@ namespace {
 
 // Sums in another order may differ by less, relatively.
 constexpr double kRounding = 1e-9;
-// 393,216 cones; finer intervals hardly tighten a bound, whose cone is dominated by the field of view.
-constexpr int kDeepestLevel = 8;
 
 // Nodes of all levels before `level` on all faces: 6 (1 + 4 + .. + 4^(level-1)).
 std::size_t nodes_above(int level) {
@@ -29,12 +28,12 @@ std::size_t node_number(const DirectionInterval& interval) {
 
 }  // namespace
 
-DirectionTree::DirectionTree(const Camera& camera, int leaf_level) : leaf_level_(leaf_level) {
-  if (leaf_level < 0 || leaf_level > kDeepestLevel)
-    throw Failure(ErrorWord::kBadUsage, "direction intervals: level " + std::to_string(leaf_level) + " is not in 0.." +
-                                            std::to_string(kDeepestLevel) + " (90 to 0.35 degrees)");
-  cones_.reserve(nodes_above(leaf_level + 1));
-  for (int level = 0; level <= leaf_level; ++level)
+DirectionTree::DirectionTree(const Camera& camera, int deepest_level) : deepest_level_(deepest_level) {
+  if (deepest_level < 0 || deepest_level > kDeepestDirectionLevel)
+    throw Failure(ErrorWord::kBadUsage, "direction intervals: level " + std::to_string(deepest_level) + " is not in 0.." +
+                                            std::to_string(kDeepestDirectionLevel) + " (90 to 0.35 degrees)");
+  cones_.reserve(nodes_above(deepest_level + 1));
+  for (int level = 0; level <= deepest_level; ++level)
     for (int face = 0; face < kFaceCount; ++face)
       for (int i = 0; i < 1 << level; ++i)
         for (int j = 0; j < 1 << level; ++j) cones_.push_back(enclosing_cone({static_cast<Face>(face), level, i, j}, camera));
@@ -45,17 +44,24 @@ const DirectionCone& DirectionTree::cone(const DirectionInterval& interval) cons
 }
 
 RegionEstimator::RegionEstimator(const Scene& scene, const std::vector<std::uint32_t>& hierarchy_rank, const TimeModel& model,
-                                 const Camera& camera, double interval_deg, RegionBounds bounds)
+                                 const Camera& camera, const ViewSpaceOptions& options)
     : scene_(&scene),
       rank_(&hierarchy_rank),
       model_(&model),
       features_(scene, camera),
-      directions_(camera, level_for_width(interval_deg)),
-      bounds_(bounds) {}
+      first_leaf_level_(level_for_width(options.interval_deg)),
+      directions_(camera, direction_level(first_leaf_level_, options.refine_levels)),
+      bounds_(options.bounds) {}
 
-CellCosts RegionEstimator::cell_costs(std::vector<Box> chain, std::span<const std::uint32_t> visible) const {
+int RegionEstimator::leaf_level(const CellCosts& cell) const {
+  return direction_level(first_leaf_level_, static_cast<int>(cell.chain.size()) - 1);
+}
+
+CellCosts RegionEstimator::cell_costs(std::vector<Box> chain, std::span<const std::uint32_t> visible,
+                                      std::vector<Box> parts) const {
   CellCosts cell;
   cell.chain = std::move(chain);
+  cell.parts = parts.empty() ? std::vector<Box>{cell.chain.front()} : std::move(parts);
   cell.objects.reserve(visible.size());
   for (const std::uint32_t object : visible) {
     const Box& bounds = scene_->objects[object].bounds;
@@ -104,7 +110,7 @@ RegionBound RegionEstimator::region_bound(CellCosts& cell, const DirectionInterv
   std::vector<Cost> costs;
   for (const std::uint32_t i : seen) costs.push_back(cell.objects[i].cost);
   std::vector<DirectionInterval> chain;
-  for (DirectionInterval node = interval; node.level >= first_sharp_level(); node = node.parent()) chain.push_back(node);
+  for (DirectionInterval node = interval; node.level >= first_sharp_level(cell); node = node.parent()) chain.push_back(node);
   for (const DirectionInterval& node : std::views::reverse(chain))
     (void)sharpen(cell, node, seen, costs, -std::numeric_limits<double>::infinity());
   return bound_of(cell, seen, costs);
@@ -117,8 +123,7 @@ Cost RegionEstimator::cost_in(CellCosts& cell, std::uint32_t index, const Gaze& 
 }
 
 RegionBound RegionEstimator::bound_of(const CellCosts& cell, std::span<const std::uint32_t> seen, std::span<const Cost> costs) const {
-  RegionSums sums = empty_frame();
-  for (const Cost& cost : costs) sums.add(cost);
+  const RegionSums sums = sums_of(costs);
   RegionBound bound;
   bound.pixels_capped = sums.pixels_capped();
   bound.constant_ms = bound.pixels_capped ? empty_frame().capped_ms : empty_frame().with_pixels_ms;
@@ -130,11 +135,30 @@ RegionBound RegionEstimator::bound_of(const CellCosts& cell, std::span<const std
   return bound;
 }
 
+RegionSums RegionEstimator::sums_of(std::span<const Cost> costs) const {
+  RegionSums sums = empty_frame();
+  for (const Cost& cost : costs) sums.add(cost);
+  return sums;
+}
+
+// Its generator depends on the interval alone, so that whoever asks of a region finds the same.
+void RegionEstimator::sample(const CellCosts& cell, const DirectionInterval& interval, std::span<const std::uint32_t> seen,
+                             std::span<Cost> costs) const {
+  std::vector<std::uint32_t> objects;
+  for (const std::uint32_t i : seen) objects.push_back(cell.objects[i].object);
+  const RegionViews views(cell.parts, interval, Rng(1, node_number(interval)));
+  cost_by_views(features_, *model_, views, objects, levels_from(*scene_, objects, cell.chain.front()), empty_frame().with_pixels_ms,
+                sums_of(costs).predicted_ms(), costs);
+}
+
 // The dearest objects are looked at first: a few near ones mostly decide.
 bool RegionEstimator::sharpen(CellCosts& cell, const DirectionInterval& interval, std::span<const std::uint32_t> seen,
                               std::span<Cost> costs, double predicted_ms) const {
-  RegionSums sums = empty_frame();
-  for (const Cost& cost : costs) sums.add(cost);
+  if (by_view() && interval.level == leaf_level(cell)) {
+    sample(cell, interval, seen, costs);
+    return sums_of(costs).predicted_ms() > predicted_ms;
+  }
+  RegionSums sums = sums_of(costs);
   if (bounds_ == RegionBounds::kByObject) return sums.predicted_ms() > predicted_ms;
   std::vector<std::uint32_t> dearest(seen.size());
   std::iota(dearest.begin(), dearest.end(), 0U);
@@ -147,9 +171,7 @@ bool RegionEstimator::sharpen(CellCosts& cell, const DirectionInterval& interval
     sums.add({lower.fixed_ms - costs[k].fixed_ms, lower.pixel_ms - costs[k].pixel_ms});
     costs[k] = lower;
   }
-  sums = empty_frame();
-  for (const Cost& cost : costs) sums.add(cost);
-  return sums.predicted_ms() > predicted_ms;
+  return sums_of(costs).predicted_ms() > predicted_ms;
 }
 
 }  // namespace standin

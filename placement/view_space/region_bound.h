@@ -7,7 +7,11 @@
 //
 // That cost holds for any direction, cheaply, and is what the search prunes by at first. Of a region of the finest levels that it leaves,
 // every object is looked at again, sample by sample (estimation/gaze.h): what of it no view of the region sees costs nothing.
-// RegionBounds::kByObject leaves that out.
+// RegionBounds::kByObject leaves that out; RegionBounds::kByView puts sampled views (region_sample.h) in its place where the search ends.
+//
+// A bound is loose because eyes are spread over a cell and because they turn within an interval, about alike: so a cell halved in position
+// has its intervals halved, too, at its first halving and at every other one after it (halving both each time costs more and gains little,
+// tests/bench/region_bound.md).
 //
 // Pixel work saturates (screen_coverage.h), so a region has two linear bounds: all terms with their pixels, or terms without and as many of
 // the costliest pixels as can pass. The smaller is chosen.
@@ -26,21 +30,29 @@
 
 namespace standin {
 
+/// 393,216 cones; finer intervals hardly tighten a bound, whose cone is dominated by the field of view.
+inline constexpr int kDeepestDirectionLevel = 8;
+
+/// Of the intervals of a cell that lies `halvings` below a leaf cube, whose own are of `level`.
+[[nodiscard]] constexpr int direction_level(int level, int halvings) {
+  return std::min(level + (halvings + 1) / 2, std::max(level, kDeepestDirectionLevel));
+}
+
 /// One object's share of a region's bound, in the region's linear form.
 struct RegionTerm {
   std::uint32_t object = 0;
   double predicted_ms = 0.0;
 };
 
-/// Cones of all direction nodes down to `leaf_level`, computed once: they depend on the camera alone.
+/// Cones of all direction nodes down to `deepest_level`, computed once: they depend on the camera alone.
 class DirectionTree {
  public:
-  DirectionTree(const Camera& camera, int leaf_level);
+  DirectionTree(const Camera& camera, int deepest_level);
   [[nodiscard]] const DirectionCone& cone(const DirectionInterval& interval) const;
-  [[nodiscard]] int leaf_level() const { return leaf_level_; }
+  [[nodiscard]] int deepest_level() const { return deepest_level_; }
 
  private:
-  int leaf_level_;
+  int deepest_level_;
   std::vector<DirectionCone> cones_;
 };
 
@@ -56,6 +68,7 @@ struct CellCosts {
   std::vector<Box> chain;  // boxes of the cell and its ancestors, the cell's first
   std::vector<ObjectCost> objects;
   std::vector<std::optional<ObjectFromBox>> samples;  // of `objects`, as far as anybody asked for them
+  std::vector<Box> parts;                             // of the view space in the cell, where views are sampled (RegionBounds::kByView)
 };
 
 /// Running sums of a region's two linear forms, always added up in hierarchy order.
@@ -81,25 +94,30 @@ struct RegionBound {
 class RegionEstimator {
  public:
   RegionEstimator(const Scene& scene, const std::vector<std::uint32_t>& hierarchy_rank, const TimeModel& model, const Camera& camera,
-                  double interval_deg, RegionBounds bounds = RegionBounds::kBySample);
+                  const ViewSpaceOptions& options);
 
-  /// `visible`: ids of the objects that may be seen from the cell.
-  [[nodiscard]] CellCosts cell_costs(std::vector<Box> chain, std::span<const std::uint32_t> visible) const;
+  /// `visible`: ids of the objects that may be seen from the cell; `parts`: CellBoxes::parts, asked for by RegionBounds::kByView alone
+  /// (none given: the cell's whole box).
+  [[nodiscard]] CellCosts cell_costs(std::vector<Box> chain, std::span<const std::uint32_t> visible, std::vector<Box> parts = {}) const;
   /// An empty frame in both linear forms.
   [[nodiscard]] RegionSums empty_frame() const;
   [[nodiscard]] bool may_see(const DirectionInterval& interval, const CellCosts& cell, const Box& bounds) const;
   /// The bound of one region from scratch: what subdivide() finds, for a checker. Uses every ancestor of `interval`.
   [[nodiscard]] RegionBound region_bound(CellCosts& cell, const DirectionInterval& interval) const;
+  /// Of the finest intervals of a cell: those that are regions with it.
+  [[nodiscard]] int leaf_level(const CellCosts& cell) const;
   /// Intervals of this level and finer ones are bounded sample by sample.
-  [[nodiscard]] int first_sharp_level() const { return std::max(0, directions_.leaf_level() - kSharpLevels + 1); }
+  [[nodiscard]] int first_sharp_level(const CellCosts& cell) const { return std::max(0, leaf_level(cell) - kSharpLevels + 1); }
   /// Lowers `costs` (of the objects `seen`: indices into cell.objects, ascending), which hold for an interval that holds this one, to what
-  /// holds for this one; up to the end where their sum exceeds `predicted_ms`, which is returned.
+  /// holds for this one (or, by views and in a leaf region, sets them to what its sampled views say); up to the end where their sum exceeds
+  /// `predicted_ms`, which is returned.
   [[nodiscard]] bool sharpen(CellCosts& cell, const DirectionInterval& interval, std::span<const std::uint32_t> seen, std::span<Cost> costs,
                              double predicted_ms) const;
   [[nodiscard]] RegionBound bound_of(const CellCosts& cell, std::span<const std::uint32_t> seen, std::span<const Cost> costs) const;
   /// Not less than region_bound(), and cheap.
   [[nodiscard]] double coarse_bound_ms(const CellCosts& cell, const DirectionInterval& interval) const;
 
+  [[nodiscard]] bool by_view() const { return bounds_ == RegionBounds::kByView; }
   [[nodiscard]] const DirectionTree& directions() const { return directions_; }
   [[nodiscard]] const FeatureTable& features() const { return features_; }
   [[nodiscard]] const TimeModel& model() const { return *model_; }
@@ -110,11 +128,14 @@ class RegionEstimator {
 
   [[nodiscard]] std::vector<std::uint32_t> seen_in(const CellCosts& cell, const DirectionInterval& interval) const;
   [[nodiscard]] Cost cost_in(CellCosts& cell, std::uint32_t index, const Gaze& gaze) const;
+  [[nodiscard]] RegionSums sums_of(std::span<const Cost> costs) const;
+  void sample(const CellCosts& cell, const DirectionInterval& interval, std::span<const std::uint32_t> seen, std::span<Cost> costs) const;
 
   const Scene* scene_;
   const std::vector<std::uint32_t>* rank_;
   const TimeModel* model_;
   FeatureTable features_;
+  int first_leaf_level_;  // of directions, in cells that are not halved
   DirectionTree directions_;
   RegionBounds bounds_;
 };

@@ -43,7 +43,7 @@ class Subdivider {
         budget_(budget),
         memory_(memory),
         cell_boxes_(space),
-        estimator_(scene, rank, model, camera, view_space_options.interval_deg, view_space_options.bounds),
+        estimator_(scene, rank, model, camera, view_space_options),
         all_objects_(scene.objects.size()) {
     std::iota(all_objects_.begin(), all_objects_.end(), 0U);
   }
@@ -91,7 +91,7 @@ class Subdivider {
 
   [[nodiscard]] CellCosts costs_of(const Cell& cell, std::vector<Box> chain) const {
     const auto& visible = cell.visible_set < 0 ? all_objects_ : visibility_.sets[static_cast<std::size_t>(cell.visible_set)];
-    return estimator_.cell_costs(std::move(chain), visible);
+    return estimator_.cell_costs(std::move(chain), visible, cell_boxes_.parts(cell.key));
   }
 
   [[nodiscard]] SearchedCell search(const CellKey& key, std::vector<Box> chain, std::int32_t visible_set) const {

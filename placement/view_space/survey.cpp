@@ -8,6 +8,7 @@
 #include "estimation/feature_table.h"
 #include "placement/view_space/cell_boxes.h"
 #include "placement/view_space/cell_locator.h"
+#include "placement/view_space/region_views.h"
 #include "render/base/error.h"
 #include "render/base/parallel.h"
 
@@ -25,12 +26,6 @@ Vec3 uniform_direction(Rng& rng) {
   const double azimuth = rng.uniform(0.0, 2.0 * std::numbers::pi);
   const double radius = std::sqrt(std::max(0.0, 1.0 - y * y));
   return glm::normalize(Vec3(radius * std::cos(azimuth), y, radius * std::sin(azimuth)));
-}
-
-Vec3 direction_in(const DirectionInterval& interval, Rng& rng) {
-  const auto [a0, a1, b0, b1] = interval.angles_rad();
-  const double a = rng.uniform(a0, a1);
-  return direction_at(interval.face, a, rng.uniform(b0, b1));
 }
 
 CellLocator locate_cells(const ViewSpace& space, const Subdivision& subdivision) {
@@ -117,14 +112,14 @@ class Surveyor {
     std::vector<SurveyedView> views(regions.size() * each);
     parallel_for(regions.size(), options_.threads, budget_, [&](std::size_t r) {
       SurveyedRegion& region = regions[r];
-      Rng rng(options_.seed, kHotStream + r);
-      const std::vector<Box> parts = cell_boxes_.parts(subdivision_.cells[region.cell].key);
-      const std::vector<double> sums = volume_sums(parts);
-      for (std::size_t i = r * each; i < (r + 1) * each; ++i) {
-        const Vec3 position = sample_boxes(parts, sums, rng);
-        views[i] = survey_view({position, direction_in(region.interval, rng)}, region.cell);
-        region.worst_sampled_ms = std::max(region.worst_sampled_ms, views[i].predicted_ms);
-      }
+      const Rng rng(options_.seed, kHotStream + r);
+      std::size_t next = r * each;
+      climb_to_worst({cell_boxes_.parts(subdivision_.cells[region.cell].key), region.interval, rng}, options_.views_per_region,
+                     [&](const View& view) {
+                       views[next] = survey_view(view, region.cell);
+                       region.worst_sampled_ms = std::max(region.worst_sampled_ms, views[next].predicted_ms);
+                       return views[next++].predicted_ms;
+                     });
     });
     return views;
   }

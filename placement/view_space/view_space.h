@@ -23,12 +23,13 @@ enum class ViewSpaceKind { kWalk, kOrbit, kPath, kBoxes };
 enum class RegionBounds {
   kBySample,  // those of its surface samples that some view may see
   kByObject,  // all of it, as in the thesis
+  kByView,    // what it costs in single views that are sampled: no bound (region_sample.h)
 };
 
 struct ViewSpaceOptions {
   double leaf_m = 23.0;         // side of a 3D leaf (thesis 5.8.1)
-  int refine_levels = 2;        // hot leaves are halved so often in position (23 -> 5.75 m)
-  double interval_deg = 11.25;  // width of a direction leaf
+  int refine_levels = 3;        // hot leaves are halved so often in position (23 -> 2.875 m)
+  double interval_deg = 11.25;  // width of a direction leaf in a leaf cube; halved with its first and third halving
   double eye_height_m = 1.7;    // walk
   double orbit_near = 2.5;      // orbit shell, in bounding radii
   double orbit_far = 10.0;

@@ -118,8 +118,9 @@ std::string placement_report(const fs::path& folder) {
 int check_command(const CommandContext& context) {
   const OpenedPlacement opened = open_placement(context);
   const PlacementFile& file = opened.file;
-  const CheckInput input{opened.scene,           opened.hierarchy.rank, opened.target.model, file.camera,           file.view_space,
-                         file.spec.interval_deg, file.spec.budget_ms,   file.atlas_pages,    region_bounds(file.spec)};
+  const ViewSpaceOptions options = view_space_options(file.spec);
+  const CheckInput input{opened.scene, opened.hierarchy.rank, opened.target.model, file.camera,
+                         file.view_space, options, file.spec.budget_ms, file.atlas_pages};
   const CheckReport report = check_placement(input, file.placement, thread_count(context.spec), context.budget);
   if (context.arguments.json) {
     std::cout << check_json(report).dump(2) << "\n";

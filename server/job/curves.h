@@ -20,7 +20,7 @@ namespace standin {
 [[nodiscard]] nlohmann::json estimator_curve(const Target& target);
 /// Certified missed share of rays, by the share asked for, mean over at most 16 regions. Work: rays per region.
 [[nodiscard]] nlohmann::json visibility_curve(const World& world, const JobSpec& spec, const WorkBudget& budget);
-/// Highest bound of a region over the worst sampled view, by halvings in position, of the 32 slowest leaf cubes of `subdivision`. Work:
+/// Highest bound of a region over the worst sampled view, by halvings in position, of the 8 slowest leaf cubes of `subdivision`. Work:
 /// cells.
 [[nodiscard]] nlohmann::json view_space_curve(const World& world, const TimeModel& model, const Subdivision& subdivision,
                                               double predicted_budget_ms, double worst_sampled_ms, const WorkBudget& budget);

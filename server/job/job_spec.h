@@ -35,7 +35,7 @@ struct JobSpec {
   double path_radius_m = 2.0;
   std::vector<Box> boxes;  // for view_space = boxes; given in the configuration file
   double leaf_m = 23.0;
-  int refine_levels = 2;
+  int refine_levels = 3;
   double interval_deg = 11.25;
   double eye_height_m = 1.7;
   std::uint64_t max_leaves = 20'000;

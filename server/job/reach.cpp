@@ -20,9 +20,12 @@ Subdivision subdivide_at(const World& world, const TimeModel& model, double pred
                    options, budget, searches);
 }
 
-std::uint64_t leaf_regions(const Subdivision& subdivision, const ViewSpaceOptions& options) {
-  const auto per_face = std::uint64_t{1} << (2 * level_for_width(options.interval_deg));
-  return subdivision.cells.size() * kFaceCount * per_face;
+std::uint64_t leaf_regions(const Subdivision& subdivision, const ViewSpaceOptions& options, int leaf_level) {
+  const int level = level_for_width(options.interval_deg);
+  std::uint64_t regions = 0;
+  for (const Cell& cell : subdivision.cells)
+    regions += kFaceCount * (std::uint64_t{1} << (2 * direction_level(level, cell.key.level - leaf_level)));
+  return regions;
 }
 
 }  // namespace
@@ -62,7 +65,7 @@ ReachSummary summarise_reach(const World& world, const TimeModel& model, const S
     if (reached_ms >= threshold_ms) break;
     threshold_ms = std::max(reached_ms, kShare * threshold_ms);
   }
-  summary.regions = leaf_regions(summary.subdivision, world.view_space_options);
+  summary.regions = leaf_regions(summary.subdivision, world.view_space_options, world.view_space.leaf_level);
   const double fill_ms = summary.reachable_ms.empty() ? worst_ms : *std::ranges::min_element(summary.reachable_ms);
   const auto quantile = [&](double share) {
     return model.bound_ms(padded_quantile(summary.reachable_ms, summary.regions, fill_ms, share));

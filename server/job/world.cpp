@@ -155,7 +155,13 @@ Camera camera_of(const JobSpec& spec) {
 }
 
 RegionBounds region_bounds(const JobSpec& spec) {
+  if (spec.region_bounds == "view") return RegionBounds::kByView;
   return spec.region_bounds == "object" ? RegionBounds::kByObject : RegionBounds::kBySample;
+}
+
+void require_bounds(const std::string& command, const JobSpec& spec) {
+  if (region_bounds(spec) == RegionBounds::kByView)
+    throw Failure(ErrorWord::kBadUsage, "--region-bounds view violates: sample or object, since " + command + " says what can be promised");
 }
 
 ViewSpaceOptions view_space_options(const JobSpec& spec) {

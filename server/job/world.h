@@ -19,6 +19,8 @@ namespace standin {
 [[nodiscard]] LoadOptions load_options(const JobSpec& spec);
 [[nodiscard]] Camera camera_of(const JobSpec& spec);
 [[nodiscard]] RegionBounds region_bounds(const JobSpec& spec);
+/// Throws Failure(kBadUsage) where only sampled views are asked for: `command` says how low a budget can be promised, which they do not.
+void require_bounds(const std::string& command, const JobSpec& spec);
 [[nodiscard]] ViewSpaceOptions view_space_options(const JobSpec& spec);
 /// `view_space` decides the default cap on layers.
 [[nodiscard]] BakeQuality quality_of(const JobSpec& spec, ViewSpaceKind view_space);

@@ -180,6 +180,7 @@ void require_common_budget(const Gates& gates, const std::vector<double>& budget
 }  // namespace
 
 JobOutcome run_sweep(const JobFiles& files, const SweepGates& gate_files, const JobSpec& spec, const WorkBudget& budget) {
+  require_bounds("sweep", spec);
   const CurveSubject subject = subject_of(files, spec);
   const Gates gates = read_gates(gate_files, subject);
   std::optional<SweepBudgets> budgets = named_budgets(spec, gates);

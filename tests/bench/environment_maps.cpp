@@ -59,7 +59,7 @@ class Bench {
         views_(views),
         cells_(job.world.view_space),
         table_(world_.scene, world_.camera),
-        estimator_(world_.scene, world_.hierarchy.rank, job.target.model, world_.camera, world_.view_space_options.interval_deg),
+        estimator_(world_.scene, world_.hierarchy.rank, job.target.model, world_.camera, world_.view_space_options),
         textures_(world_.scene) {}
 
   [[nodiscard]] std::size_t cell_count() const { return cells_.leaves().size(); }
@@ -127,8 +127,8 @@ class Bench {
 
   /// Greatest bound over all leaf intervals: the near objects', and of each map that some view of the region may see.
   [[nodiscard]] double worst_region_ms(const MappedCell& cell) const {
-    const int level = estimator_.directions().leaf_level();
     CellCosts costs = estimator_.cell_costs(cell.chain, cell.near);
+    const int level = estimator_.leaf_level(costs);
     double worst_ms = 0.0;
     for (int face = 0; face < kFaceCount; ++face)
       for (int i = 0; i < 1 << level; ++i)

@@ -38,7 +38,7 @@ class Bench {
         model_(model),
         views_(views),
         cells_(world.view_space),
-        estimator_(world.scene, world.hierarchy.rank, model, world.camera, world.view_space_options.interval_deg) {
+        estimator_(world.scene, world.hierarchy.rank, model, world.camera, world.view_space_options) {
     everything_.resize(world.scene.objects.size());
     std::iota(everything_.begin(), everything_.end(), 0U);
   }
@@ -47,7 +47,7 @@ class Bench {
     const std::size_t cell = rng.below(cells_.leaves().size());
     const double y = rng.uniform(-0.5, 0.5), azimuth = rng.uniform(0.0, 6.283185307179586);  // as people look
     const Vec3 direction(std::sqrt(1.0 - y * y) * std::cos(azimuth), y, std::sqrt(1.0 - y * y) * std::sin(azimuth));
-    return {cells_.leaves()[cell], cell, interval_of(direction, estimator_.directions().leaf_level())};
+    return {cells_.leaves()[cell], cell, interval_of(direction, level_for_width(world_.view_space_options.interval_deg))};
   }
 
   [[nodiscard]] Looseness measure(const Region& region, Rng& rng) const {

@@ -34,7 +34,7 @@ struct World {
     given.predicted_budget_ms = budget_ms;
     return subdivide(scene, rank, space, visibility, model, camera, options, given, {}, memory);
   }
-  [[nodiscard]] RegionEstimator estimator(const TimeModel& model) const { return {scene, rank, model, camera, options.interval_deg}; }
+  [[nodiscard]] RegionEstimator estimator(const TimeModel& model) const { return {scene, rank, model, camera, options}; }
   [[nodiscard]] std::vector<std::uint32_t> all() const { return rank; }
 };
 
@@ -78,7 +78,7 @@ TEST(Subdivision, IsSlowOnlyWhenLookingAtTheForest) {
   bool ahead = false;
   for (const Cpv& cpv : found.cpvs) {
     const DirectionInterval& interval = found.intervals[cpv.interval];
-    ahead = ahead || interval == interval_of(to_forest, 3);
+    ahead = ahead || interval == interval_of(to_forest, interval.level);
     for (const Vec3& corner : interval.corner_directions())  // half image diagonal 30.4, interval 16, forest 11 degrees: 70 is far beyond
       EXPECT_GT(glm::dot(corner, to_forest), std::cos(glm::radians(70.0)));
     EXPECT_GT(cpv.predicted_ms, 5.0);
@@ -175,7 +175,7 @@ TEST(Subdivision, FindsExactlyTheRegionsOverBudget) {
     double highest = 0.0;
     for (const Cell& cell : found.cells) {
       CellCosts costs = estimator.cell_costs(cells.chain(cell.key), world.all());
-      for (const DirectionInterval& interval : all_intervals(2)) {
+      for (const DirectionInterval& interval : all_intervals(estimator.leaf_level(costs))) {
         const RegionBound bound = estimator.region_bound(costs, interval);
         highest = std::max(highest, bound.predicted_ms);
         const auto at = regions.find({cell.key, interval});
@@ -239,7 +239,7 @@ TEST(Subdivision, BoundsHoldForEverySampledView) {
       view.direction = glm::normalize(view.direction);
       const auto cell = locator.find(view.position);
       ASSERT_TRUE(cell.has_value());
-      const Cpv& cpv = regions.at({keys[*cell], interval_of(view.direction, 2)});
+      const Cpv& cpv = regions.at({keys[*cell], interval_of(view.direction, direction_level(2, keys[*cell].level - world.space.leaf_level))});
       const double predicted_ms = model.predicted_ms(features.frame(world.all(), view));
       ASSERT_LE(predicted_ms, cpv.predicted_ms * (1 + 1e-12)) << "view " << i;
       tightest = std::max(tightest, predicted_ms / cpv.predicted_ms);
@@ -282,7 +282,7 @@ TEST(Subdivision, BoundsByObjectCountAllOfAnObjectThatMayBeSeen) {
   const Subdivision by_sample = world.subdivide_for(0.0, model);
   world.options.bounds = RegionBounds::kByObject;
   const Subdivision by_object = world.subdivide_for(0.0, model);
-  const RegionEstimator estimator(world.scene, world.rank, model, world.camera, world.options.interval_deg, RegionBounds::kByObject);
+  const RegionEstimator estimator(world.scene, world.rank, model, world.camera, world.options);
   const CellBoxes cells(world.space);
   const auto sharper = regions_of(by_sample);
   int looser = 0;
@@ -313,7 +313,7 @@ TEST(Subdivision, HotCellsAreHalvedAndColdOnesKept) {
     if (hot.contains(cell) && found.cells[cell].key.level < world.space.finest_level) {  // halving did not pay any more
       CellCosts parent = estimator.cell_costs(cells.chain(found.cells[cell].key.parent()), world.all());
       double parent_ms = 0.0;
-      for (const DirectionInterval& interval : all_intervals(estimator.directions().leaf_level()))
+      for (const DirectionInterval& interval : all_intervals(estimator.leaf_level(parent)))
         parent_ms = std::max(parent_ms, estimator.region_bound(parent, interval).predicted_ms);
       EXPECT_GT(found.cells[cell].worst_predicted_ms, 0.97 * parent_ms);
     }

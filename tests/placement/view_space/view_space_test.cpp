@@ -40,7 +40,7 @@ TEST(ViewSpace, LeavesOfAFlatBoxAreCountedByHand) {
   // 50 m in leaves of 23 m: three a side; the root is the next power of two.
   const ViewSpace space = make_box_view_space({{{0, 0, 0}, {50, 0.2, 50}}}, {});
   EXPECT_EQ(space.leaf_level, 2);
-  EXPECT_EQ(space.finest_level, 4);
+  EXPECT_EQ(space.finest_level, 5);
   EXPECT_EQ(space.root_side_m, 92.0);
   EXPECT_EQ(leaf_keys(space).size(), 9U);
   EXPECT_EQ(space.cell_box({2, {2, 0, 0}}), (Box{{46, 0, 0}, {50, 0.2, 23}}));

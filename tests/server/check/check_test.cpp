@@ -48,7 +48,6 @@ struct Checked {
   ViewSpaceOptions options{.leaf_m = 4.0, .refine_levels = 0, .interval_deg = 22.5};
   ViewSpace space = make_box_view_space({{{1, 1.6, 3}, {9, 1.8, 7}}}, options);
   double budget_ms = 1.0;
-  RegionBounds bounds = RegionBounds::kBySample;
   Placement placement;
 
   Checked() {
@@ -65,7 +64,7 @@ struct Checked {
   }
 
   [[nodiscard]] CheckReport check(int threads = 1) const {
-    const CheckInput input{scene, rank, model, camera, space, options.interval_deg, budget_ms, 1, bounds};
+    const CheckInput input{scene, rank, model, camera, space, options, budget_ms, 1};
     return check_placement(input, placement, threads, {});
   }
 };
@@ -197,7 +196,7 @@ TEST(Check, BoundsAreThoseThatThePlacementWasMadeWith) {
   Checked world;
   world.model = test::full_time_model();
   const CheckReport by_sample = world.check();
-  world.bounds = RegionBounds::kByObject;
+  world.options.bounds = RegionBounds::kByObject;
   const CheckReport by_object = world.check();
   EXPECT_NE(sentences(by_sample), sentences(by_object));
 }
