@@ -60,9 +60,8 @@ SizeModel fit_size_model(const Scene& scene, const std::vector<Candidate>& candi
   const auto chosen = spread_of_candidates(candidates, count, seed);
   const ObjectOutlines outlines(scene);
   std::vector<std::optional<SizeSample>> baked(chosen.size());
-  parallel_for(chosen.size(), threads, budget, [&](std::size_t i) {
-    baked[i] = bake_size_sample(scene, outlines, candidates[chosen[i]], camera, quality, bake);
-  });
+  parallel_for(chosen.size(), threads, budget,
+               [&](std::size_t i) { baked[i] = bake_size_sample(scene, outlines, candidates[chosen[i]], camera, quality, bake); });
   std::vector<SizeSample> samples;
   for (const auto& sample : baked)
     if (sample) samples.push_back(*sample);

@@ -25,7 +25,7 @@ struct RememberedSearch {
 struct SearchRequest {
   CellKey cell;
   double predicted_budget_ms = 0.0;
-  std::span<const Box> chain;     // the cell's box and those of its ancestors up to the leaf level
+  std::span<const Box> chain{};   // the cell's box and those of its ancestors up to the leaf level
   std::int32_t visible_set = -1;  // as Cell::visible_set
 };
 

@@ -148,7 +148,8 @@ std::vector<Fingerprint> look_contents(const Scene& scene) {
   const auto textures = each(scene.textures, [](const Texture& texture) { return content_of(texture); });
   const auto materials = each(scene.materials, [&](const Material& material) { return content_of(material, textures); });
   return each(scene.objects, [&](const Object& object) {
-    return object_content(scene, object, [&](const Part& part, Fingerprinter& to) { to.add(meshes[part.mesh]).add(materials[part.material]); });
+    return object_content(scene, object,
+                          [&](const Part& part, Fingerprinter& to) { to.add(meshes[part.mesh]).add(materials[part.material]); });
   });
 }
 

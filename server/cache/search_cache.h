@@ -1,9 +1,9 @@
 // Direction searches (placement/view_space) that outlive the job, one entry for each 3D cell.
 //
-// A search looks at the cell's chain of boxes and at the cost features of the objects that may be seen from it, in hierarchy order, in which
-// costs are summed; the camera, the time model's prices and which pixel kinds the scene has are the same for all. The budget is no part of an
-// entry's name: an entry holds its own, and a search at a tighter one answers every looser one (search_memory.h), so it replaces it. Objects
-// are written as positions in the list that the name stands for.
+// A search looks at the cell's chain of boxes and at the cost features of the objects that may be seen from it, in hierarchy order, in
+// which costs are summed; the camera, the time model's prices and which pixel kinds the scene has are the same for all. The budget is no
+// part of an entry's name: an entry holds its own, and a search at a tighter one answers every looser one (search_memory.h), so it replaces
+// it. Objects are written as positions in the list that the name stands for.
 #pragma once
 
 #include <mutex>

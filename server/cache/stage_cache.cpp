@@ -36,16 +36,11 @@ std::size_t header_size() {
   return size;
 }
 
-// The file's bytes; nothing where it cannot be read.
-std::optional<std::string> bytes_of(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary | std::ios::ate);
-  if (!stream) return std::nullopt;
-  const auto size = static_cast<std::streamoff>(stream.tellg());
-  if (size < 0) return std::nullopt;
-  std::string bytes(static_cast<std::size_t>(size), '\0');
-  stream.seekg(0);
-  stream.read(bytes.data(), size);
-  if (stream.gcount() != size) return std::nullopt;
+// The next `size` bytes; fewer where the file ends.
+std::string next_bytes(std::ifstream& stream, std::size_t size) {
+  std::string bytes(size, '\0');
+  stream.read(bytes.data(), static_cast<std::streamsize>(size));
+  bytes.resize(static_cast<std::size_t>(stream.gcount()));
   return bytes;
 }
 
@@ -130,13 +125,17 @@ fs::path StageCache::file_of(const CacheStage& stage, const Fingerprint& inputs)
   return folder_ / stage.name / name_of(stage, inputs).hex();
 }
 
+// No more is read than the file can hold, whatever it says.
 std::optional<std::string> StageCache::read(const CacheStage& stage, const Fingerprint& name) const {
-  auto bytes = bytes_of(folder_ / stage.name / name.hex());
-  if (!bytes || bytes->size() < header_size()) return std::nullopt;
-  const std::string_view payload = std::string_view(*bytes).substr(header_size());
-  if (std::string_view(*bytes).substr(0, header_size()) != header_of(name, payload)) return std::nullopt;
-  bytes->erase(0, header_size());
-  return bytes;
+  const fs::path file = folder_ / stage.name / name.hex();
+  std::error_code error;
+  const auto size = fs::file_size(file, error);  // an error for what is no file
+  if (error || size < header_size()) return std::nullopt;
+  std::ifstream stream(file, std::ios::binary);
+  const std::string header = next_bytes(stream, header_size());
+  std::string payload = next_bytes(stream, size - header_size());
+  if (header != header_of(name, payload)) return std::nullopt;
+  return payload;
 }
 
 void StageCache::keep(const CacheStage& stage, const Fingerprint& inputs, std::string_view payload) {

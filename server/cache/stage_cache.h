@@ -2,8 +2,8 @@
 //
 // A second job after an edit finds there what the edit did not reach, and a job of another budget what does not depend on it (the thesis
 // runs all of chapter 5 again). The name says what a result is, so nothing in the folder is ever out of date: an edit asks for other names.
-// The name also holds the build identity (render/base/build_identity.h) and the stage's own format, so that no other code's result is taken.
-// An entry is written beside its place and renamed: processes may share the folder, wherever they run, and one that is killed leaves
+// The name also holds the build identity (render/base/build_identity.h) and the stage's own format, so that no other code's result is
+// taken. An entry is written beside its place and renamed: processes may share the folder, wherever they run, and one that is killed leaves
 // nothing that is read. An entry that is cut short, damaged or of another layout counts as absent, and is replaced.
 //
 //   FOLDER/STAGE/HEX   magic, layout version, fingerprint of the inputs, length of the payload, its SHA-256, payload

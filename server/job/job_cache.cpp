@@ -15,10 +15,8 @@ struct NamedStage {
   const CacheStage* stage;
   const char* results;
 };
-constexpr NamedStage kStages[] = {{&kVisibleSets, "visible sets"},
-                                  {&kVisibilityAudits, "visibility audits"},
-                                  {&kSearches, "direction searches"},
-                                  {&kBakes, "bakes"}};
+constexpr NamedStage kStages[] = {
+    {&kVisibleSets, "visible sets"}, {&kVisibilityAudits, "visibility audits"}, {&kSearches, "direction searches"}, {&kBakes, "bakes"}};
 
 json to_json(const CacheCounts& counts) {
   return {{"hits", counts.hits}, {"misses", counts.misses}, {"bytes_read", counts.bytes_read}, {"bytes_written", counts.bytes_written}};
@@ -36,12 +34,21 @@ json to_json(const CacheFigures& figures) {
   return cache;
 }
 
+bool lies_in(const std::filesystem::path& path, const std::filesystem::path& folder) {
+  const auto relative = std::filesystem::weakly_canonical(path).lexically_relative(std::filesystem::weakly_canonical(folder));
+  return !relative.empty() && *relative.begin() != "..";
+}
+
 }  // namespace
 
-std::unique_ptr<StageCache> open_cache(const JobSpec& spec) {
-  if (!spec.cache.empty()) return std::make_unique<StageCache>(spec.cache, build_identity());
-  if (spec.update) throw Failure(ErrorWord::kBadUsage, "--update violates: needs --cache DIR, of which it deletes what is not used");
-  return nullptr;
+std::unique_ptr<StageCache> open_cache(const JobSpec& spec, const std::filesystem::path& result_folder) {
+  if (spec.cache.empty()) {
+    if (spec.update) throw Failure(ErrorWord::kBadUsage, "--update violates: needs --cache DIR, of which it deletes what is not used");
+    return nullptr;
+  }
+  if (!result_folder.empty() && lies_in(spec.cache, result_folder))
+    throw Failure(ErrorWord::kBadUsage, "--cache " + spec.cache + " violates: outside the result folder, which is replaced whole");
+  return std::make_unique<StageCache>(spec.cache, build_identity());
 }
 
 void close_cache(StageCache* cache, const JobSpec& spec, json& metrics) {

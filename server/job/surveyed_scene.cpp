@@ -34,8 +34,7 @@ void add_sizes(Surveyed& job, const JobSpec& spec, const Subdivision* problem, S
 
 std::unique_ptr<SearchMemory> search_cache(const Surveyed& job) {
   const World& world = job.world;
-  const SearchScene scene{world.scene,      world.hierarchy.rank, world.visibility,
-                          job.target.model, world.camera,         world.view_space_options};
+  const SearchScene scene{world.scene, world.hierarchy.rank, world.visibility, job.target.model, world.camera, world.view_space_options};
   return std::make_unique<SearchCache>(*job.cache, scene);
 }
 
@@ -58,7 +57,7 @@ void add_reach(Surveyed& job, const JobSpec& spec, const Subdivision* problem, S
 }  // namespace
 
 void load_job(const JobFiles& files, const JobSpec& spec, StageClock& clock, const WorkBudget& budget, Surveyed& job) {
-  job.cache = open_cache(spec);
+  job.cache = open_cache(spec, files.folder);
   job.target = read_target(files.target);
   build_world(files.scene, spec, clock, budget, job.world, job.cache.get());
   if (job.cache != nullptr) job.searches = search_cache(job);

@@ -197,7 +197,7 @@ test("a job that is killed leaves what it had finished, and the next one goes on
 
 test("a cache that cannot be, and an update of none, are refused before any work", () => {
   writeFileSync(path("file"), "no folder");
-  for (const [flags, word] of [[["--cache", join(path("file"), "cache")], /cannot be written to: Not a directory/], [["--update"], /--update violates: needs --cache/]]) {
+  for (const [flags, word] of [[["--cache", join(path("file"), "cache")], /cannot be written to: Not a directory/], [["--cache", join(path("refused"), "cache")], /outside the result folder/], [["--update"], /--update violates: needs --cache/]]) {
     const { code, err } = standin("place", city, ...job, "--quiet", "--budget-ms", budget, "-o", path("refused"), ...flags);
     assert.equal(code, 2, err);
     assert.match(err, word);

@@ -110,7 +110,9 @@ TEST_F(BakeCaches, EveryInputMatters) {
   for (int number = 0; number < 15; ++number)
     candidate([&](Candidate& c) {
       auto& shaft = std::get<Shaft>(c.view_cell);
-      double* const numbers[] = {&shaft.apex.x, &shaft.apex.y, &shaft.apex.z, &shaft.axis.x, &shaft.axis.y, &shaft.axis.z, &shaft.right.x, &shaft.right.y, &shaft.right.z, &shaft.up.x, &shaft.up.y, &shaft.up.z, &shaft.tan_half.x, &shaft.tan_half.y, &shaft.min_distance_m};
+      double* const numbers[] = {&shaft.apex.x, &shaft.apex.y,  &shaft.apex.z,     &shaft.axis.x,     &shaft.axis.y,
+                                 &shaft.axis.z, &shaft.right.x, &shaft.right.y,    &shaft.right.z,    &shaft.up.x,
+                                 &shaft.up.y,   &shaft.up.z,    &shaft.tan_half.x, &shaft.tan_half.y, &shaft.min_distance_m};
       *numbers[number] += 0.01;
     });
   const auto quality = [&](const std::function<void(BakeQuality&)>& change) {

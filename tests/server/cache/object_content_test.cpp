@@ -35,7 +35,8 @@ const std::vector<Edit>& edits() {
   static const std::vector<Edit> list = {
       {"moved", kBlock, [](Scene& s) { s.objects[kBlock].world_from_object[3].x += 0.001; }, true, true, true},
       {"a vertex", kCrate, [](Scene& s) { mesh_of(s, kCrate).positions[3].y += 0.125F; }, true, true, true},
-      {"a triangle turned", kBlock, [](Scene& s) { std::swap(mesh_of(s, kBlock).indices[0], mesh_of(s, kBlock).indices[1]); }, true, true, true},
+      {"a triangle turned", kBlock, [](Scene& s) { std::swap(mesh_of(s, kBlock).indices[0], mesh_of(s, kBlock).indices[1]); }, true, true,
+       true},
       {"a triangle less", kBlock, [](Scene& s) { mesh_of(s, kBlock).indices.resize(33); }, true, true, true},
       {"a normal", kCrate, [](Scene& s) { mesh_of(s, kCrate).normals[3].y += 0.125F; }, false, false, true},
       {"coordinates of an opaque texture", kCrate, [](Scene& s) { mesh_of(s, kCrate).uvs[3].y += 0.125F; }, false, false, true},
@@ -57,7 +58,8 @@ const std::vector<Edit>& edits() {
       {"from where a level is shown", kCrate, [](Scene& s) { s.objects[kCrate].levels[0].least_distance_m = 40.0; }, false, true, false},
       {"no level", kCrate, [](Scene& s) { s.objects[kCrate].levels.clear(); }, false, true, false},
       {"a level of another mesh", kCrate, [](Scene& s) { s.parts[3].mesh = s.parts[kPane].mesh; }, false, true, false},
-      {"a name", kCrate, [](Scene& s) { s.objects[kCrate].name = mesh_of(s, kCrate).name = material_of(s, kCrate).name = "x"; }, false, false, false},
+      {"a name", kCrate, [](Scene& s) { s.objects[kCrate].name = mesh_of(s, kCrate).name = material_of(s, kCrate).name = "x"; }, false,
+       false, false},
   };
   return list;
 }

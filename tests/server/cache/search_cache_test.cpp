@@ -154,7 +154,8 @@ TEST_F(SearchCaches, EveryInputMattersAndTheBudgetAndColoursDoNot) {
 
   const std::vector<Box> longer = {chain[0], chain[1], {Vec3(0.0), Vec3(4.0)}};
   std::vector<Fingerprint> all = {plain, inputs_of({}, {{}, 5.0, longer, 1}, cache),
-                                  inputs_of({}, {{}, 5.0, std::span(longer).subspan(1), 1}, cache), inputs_of({}, {{}, 5.0, chain, 0}, cache)};
+                                  inputs_of({}, {{}, 5.0, std::span(longer).subspan(1), 1}, cache),
+                                  inputs_of({}, {{}, 5.0, chain, 0}, cache)};
   for (const auto& change : std::vector<std::function<void(Town&)>>{
            [](Town& t) { t.camera.width = 256; },
            [](Town& t) { t.camera.height = 256; },

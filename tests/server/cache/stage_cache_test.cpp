@@ -117,6 +117,16 @@ TEST_F(StageCaches, AnEntryUnderAnotherNameIsAbsent) {
   EXPECT_EQ(recall(cache, 2), std::nullopt);
 }
 
+TEST_F(StageCaches, WhatIsNoFileIsAbsentAndCannotBeReplaced) {
+  StageCache cache = open();
+  fs::create_directories(cache.file_of(kStage, inputs(1)));
+  EXPECT_EQ(recall(cache, 1), std::nullopt);
+  cache.keep(kStage, inputs(1), "one");
+  EXPECT_EQ(cache.figures().write_failures, 1U);
+  EXPECT_EQ(recall(cache, 1), std::nullopt);
+  EXPECT_EQ(files(), 0U);
+}
+
 TEST_F(StageCaches, WhatCannotBeDecodedIsAbsent) {
   StageCache cache = open();
   cache.keep(kStage, inputs(1), "ab");
@@ -234,8 +244,17 @@ TEST(Fingerprints, DifferByEveryValueAndByWhereOneEnds) {
     return to.fingerprint();
   };
   using Text = std::string_view;
-  const std::vector<Fingerprint> all = {of(1),  of(2),         of(1, 2),      of(2, 1),          of(std::uint64_t{1}),      of(0.0),
-                                        of(-0.0), of(Text("ab")), of(Text("a"), Text("b")), of(Text(""), Text("ab")), of(Text("ab"), Text(""))};
+  const std::vector<Fingerprint> all = {of(1),
+                                        of(2),
+                                        of(1, 2),
+                                        of(2, 1),
+                                        of(std::uint64_t{1}),
+                                        of(0.0),
+                                        of(-0.0),
+                                        of(Text("ab")),
+                                        of(Text("a"), Text("b")),
+                                        of(Text(""), Text("ab")),
+                                        of(Text("ab"), Text(""))};
   EXPECT_EQ(std::set<Fingerprint>(all.begin(), all.end()).size(), all.size());
   EXPECT_EQ(of(1, 2), of(1, 2));
   EXPECT_EQ(fingerprint_of("abc").hex(), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
