@@ -9,6 +9,7 @@
 #include "server/files/placement_json.h"
 #include "server/job/curves.h"
 #include "server/job/gpu_memory.h"
+#include "server/job/job_cache.h"
 #include "server/job/metrics.h"
 #include "server/job/place_at_budget.h"
 #include "server/job/placement_metrics.h"
@@ -64,6 +65,7 @@ JobOutcome run_survey(const JobFiles& files, const JobSpec& spec, const WorkBudg
   survey_scene(job, spec, nullptr, clock, budget);
   JobOutcome outcome;
   outcome.metrics = common_metrics(job, clock);
+  close_cache(job.cache.get(), spec, outcome.metrics);
   outcome.metrics["causes"] = causes_json(job.world, job.reach.subdivision, job.target.model);
   outcome.metrics["heat_map"] = heat_map_json(job.reach.subdivision, nullptr, job.target.model);
   outcome.metrics["curves"] = {{"estimator", estimator_curve(job.target)}};
@@ -97,6 +99,7 @@ JobOutcome run_place(const JobFiles& files, const JobSpec& spec, const WorkBudge
   JobOutcome outcome;
   outcome.metrics = common_metrics(job, clock);
   json& metrics = outcome.metrics;
+  close_cache(job.cache.get(), spec, metrics);
   metrics["budget_ms"] = spec.budget_ms;
   metrics["cpv"] = cpv_json(placed.placement);
   metrics["candidates"] = candidates_json(placed.candidates);

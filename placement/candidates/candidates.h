@@ -10,6 +10,8 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <optional>
 #include <vector>
 
 #include "placement/candidates/size_models.h"
@@ -56,10 +58,16 @@ struct CandidateSet {
                                                const TimeModel& model, const SizeModels& sizes, const Camera& camera,
                                                const BakeQuality& quality, const CandidateOptions& options, const WorkBudget& budget);
 
+/// From a candidate to its impostor; nothing where there can be none: the sketch was too hopeful. May be called from several threads.
+using BakeCandidate = std::function<std::optional<Impostor>(const Candidate&)>;
+/// Bakes. All references must outlive it.
+[[nodiscard]] BakeCandidate candidate_baker(const Scene& scene, const TexturePyramids& textures, const Camera& camera,
+                                            const BakeQuality& quality, const WorkBudget& budget);
+
 /// Bakes a spread of `count` of the candidates, all of one technique, and fits its size model (deterministic).
 [[nodiscard]] SizeModel fit_size_model(const Scene& scene, const std::vector<Candidate>& candidates, const Camera& camera,
                                        const BakeQuality& quality, std::uint32_t count, std::uint64_t seed, int threads,
-                                       const WorkBudget& budget);
+                                       const WorkBudget& budget, const BakeCandidate& bake);
 /// A size model to start from, before anything was baked: fitted on other scenes.
 [[nodiscard]] SizeModel default_size_model(Technique technique = Technique::kLayered);
 

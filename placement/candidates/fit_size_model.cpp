@@ -11,7 +11,6 @@
 #include "render/base/rng.h"
 #include "render/impostor/atlas.h"
 #include "render/impostor/technique.h"
-#include "render/impostor/texture_pyramid.h"
 #include "render/scene/object_bounds.h"
 
 namespace standin {
@@ -32,34 +31,37 @@ std::vector<std::uint32_t> spread_of_candidates(const std::vector<Candidate>& ca
   return chosen;
 }
 
-std::optional<SizeSample> bake_size_sample(const Scene& scene, const ObjectOutlines& outlines, const TexturePyramids& textures,
-                                           const Candidate& candidate, const Camera& camera, const BakeQuality& quality,
-                                           const WorkBudget& budget) {
+BakeCandidate candidate_baker(const Scene& scene, const TexturePyramids& textures, const Camera& camera, const BakeQuality& quality,
+                              const WorkBudget& budget) {
+  return [&](const Candidate& candidate) -> std::optional<Impostor> {
+    try {
+      return bake_impostor(scene, textures, candidate.technique, {candidate.objects, candidate.view_cell}, camera, quality, budget);
+    } catch (const Failure& failure) {
+      if (failure.word() != ErrorWord::kImpostorImpossible) throw;
+      return std::nullopt;
+    }
+  };
+}
+
+std::optional<SizeSample> bake_size_sample(const Scene& scene, const ObjectOutlines& outlines, const Candidate& candidate,
+                                           const Camera& camera, const BakeQuality& quality, const BakeCandidate& bake) {
   const Box bounds = bounds_of(scene, candidate.objects);
   const ImpostorSketch sketch = sketch_impostor(bounds, outlines.of(candidate.objects), candidate.view_cell, camera, quality);
   if (!std::isfinite(sketch.layers)) return std::nullopt;
-  try {
-    const BakeRequest request{candidate.objects, candidate.view_cell};
-    const Impostor impostor = bake_impostor(scene, textures, candidate.technique, request, camera, quality, budget);
-    if (impostor.empty()) return std::nullopt;
-    const ImpostorCost cost = impostor_cost(impostor);
-    return SizeSample{size_input(scene, outlines, candidate.objects, sketch),
-                      {static_cast<double>(texture_bytes(impostor)), cost.texels, cost.quads}};
-  } catch (const Failure& failure) {
-    if (failure.word() != ErrorWord::kImpostorImpossible) throw;
-    return std::nullopt;
-  }
+  const std::optional<Impostor> impostor = bake(candidate);
+  if (!impostor || impostor->empty()) return std::nullopt;
+  const ImpostorCost cost = impostor_cost(*impostor);
+  return SizeSample{size_input(scene, outlines, candidate.objects, sketch),
+                    {static_cast<double>(texture_bytes(*impostor)), cost.texels, cost.quads}};
 }
 
 SizeModel fit_size_model(const Scene& scene, const std::vector<Candidate>& candidates, const Camera& camera, const BakeQuality& quality,
-                         std::uint32_t count, std::uint64_t seed, int threads, const WorkBudget& budget) {
+                         std::uint32_t count, std::uint64_t seed, int threads, const WorkBudget& budget, const BakeCandidate& bake) {
   const auto chosen = spread_of_candidates(candidates, count, seed);
   const ObjectOutlines outlines(scene);
-  const TexturePyramids textures(scene);
   std::vector<std::optional<SizeSample>> baked(chosen.size());
-  parallel_for(chosen.size(), threads, budget, [&](std::size_t i) {
-    baked[i] = bake_size_sample(scene, outlines, textures, candidates[chosen[i]], camera, quality, budget);
-  });
+  parallel_for(chosen.size(), threads, budget,
+               [&](std::size_t i) { baked[i] = bake_size_sample(scene, outlines, candidates[chosen[i]], camera, quality, bake); });
   std::vector<SizeSample> samples;
   for (const auto& sample : baked)
     if (sample) samples.push_back(*sample);

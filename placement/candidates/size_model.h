@@ -46,8 +46,7 @@ struct SizeSample {
 [[nodiscard]] std::vector<std::uint32_t> spread_of_candidates(const std::vector<Candidate>& candidates, std::uint32_t count,
                                                               std::uint64_t seed);
 /// Nothing where the sketch was too hopeful, or where the bake shows nothing.
-[[nodiscard]] std::optional<SizeSample> bake_size_sample(const Scene& scene, const ObjectOutlines& outlines,
-                                                         const TexturePyramids& textures, const Candidate& candidate, const Camera& camera,
-                                                         const BakeQuality& quality, const WorkBudget& budget);
+[[nodiscard]] std::optional<SizeSample> bake_size_sample(const Scene& scene, const ObjectOutlines& outlines, const Candidate& candidate,
+                                                         const Camera& camera, const BakeQuality& quality, const BakeCandidate& bake);
 
 }  // namespace standin

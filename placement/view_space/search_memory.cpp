@@ -2,16 +2,16 @@
 
 namespace standin {
 
-std::shared_ptr<const RememberedSearch> SearchMemory::recall(const CellKey& cell) const {
+std::shared_ptr<const RememberedSearch> SearchMemory::recall(const SearchRequest& request) {
   const std::scoped_lock lock(mutex_);
-  const auto found = cells_.find(cell);
+  const auto found = cells_.find(request.cell);
   return found != cells_.end() ? found->second : nullptr;
 }
 
-void SearchMemory::keep(const CellKey& cell, double predicted_budget_ms, const DirectionSearchResult& found) {
-  auto fresh = std::make_shared<const RememberedSearch>(predicted_budget_ms, found);
+void SearchMemory::keep(const SearchRequest& request, const DirectionSearchResult& found) {
+  auto fresh = std::make_shared<const RememberedSearch>(request.predicted_budget_ms, found);
   const std::scoped_lock lock(mutex_);
-  cells_[cell] = std::move(fresh);
+  cells_[request.cell] = std::move(fresh);
 }
 
 }  // namespace standin

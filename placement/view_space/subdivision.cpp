@@ -104,11 +104,12 @@ class Subdivider {
 
   [[nodiscard]] DirectionSearchResult search(const SearchedCell& of) const {
     const double predicted_ms = options_.predicted_budget_ms;
-    const auto known = memory_ != nullptr ? memory_->recall(of.cell.key) : nullptr;
+    const SearchRequest request{of.cell.key, predicted_ms, of.chain, of.cell.visible_set};
+    const auto known = memory_ != nullptr ? memory_->recall(request) : nullptr;
     if (known != nullptr && known->predicted_budget_ms <= predicted_ms) return at_looser_budget(known->found, predicted_ms);
     CellCosts costs = costs_of(of.cell, of.chain);
     DirectionSearchResult found = search_directions(estimator_, costs, predicted_ms, known != nullptr ? &known->found : nullptr);
-    if (memory_ != nullptr) memory_->keep(of.cell.key, predicted_ms, found);
+    if (memory_ != nullptr) memory_->keep(request, found);
     return found;
   }
 

@@ -75,13 +75,18 @@ class RegionSampler {
 
 }  // namespace
 
+VisibleSet sample_visible_set(const Scene& scene, const Raytracer& raytracer, const Box& region, const VisibilityOptions& options,
+                              std::uint64_t stream, const WorkBudget& budget) {
+  if (scene.objects.empty()) return {};
+  return RegionSampler(scene, raytracer, region, options, stream, budget).sample();
+}
+
 std::vector<VisibleSet> sample_visible_sets(const Scene& scene, const Raytracer& raytracer, const std::vector<Box>& regions,
                                             const VisibilityOptions& options, int threads, const WorkBudget& budget) {
   std::vector<VisibleSet> sets(regions.size());
-  if (scene.objects.empty()) return sets;
   std::atomic<std::size_t> done{0};
   parallel_for(regions.size(), threads, budget, [&](std::size_t i) {
-    sets[i] = RegionSampler(scene, raytracer, regions[i], options, i, budget).sample();
+    sets[i] = sample_visible_set(scene, raytracer, regions[i], options, i, budget);
     budget.report("visibility", static_cast<double>(++done) / static_cast<double>(regions.size()));
   });
   return sets;

@@ -34,6 +34,10 @@ struct VisibleSet {
   std::uint64_t misses = 0;            // certifying rays that saw something new
 };
 
+/// Of one region, whose rays are those of `stream` (its number): a task of its own, which needs no other region.
+[[nodiscard]] VisibleSet sample_visible_set(const Scene& scene, const Raytracer& raytracer, const Box& region,
+                                            const VisibilityOptions& options, std::uint64_t stream, const WorkBudget& budget);
+
 /// One set per region, independent of the number of threads.
 [[nodiscard]] std::vector<VisibleSet> sample_visible_sets(const Scene& scene, const Raytracer& raytracer, const std::vector<Box>& regions,
                                                           const VisibilityOptions& options, int threads, const WorkBudget& budget);

@@ -1,8 +1,10 @@
 // survey, place and sweep: run the pipeline, say in a few lines what came out.
 #include <cstdio>
 #include <iostream>
+#include <string>
 
 #include "server/command_line/commands.h"
+#include "server/job/job_cache.h"
 #include "server/pipeline.h"
 #include "server/sweep/sweep.h"
 
@@ -93,6 +95,7 @@ int finish(const JobOutcome& outcome, const CommandContext& context, void (*prin
   } else {
     print(outcome.metrics);
     print_left_out(outcome.metrics);
+    if (const std::string sentence = cache_sentence(outcome.metrics); !sentence.empty()) std::printf("%s\n", sentence.c_str());
   }
   return outcome.aim_met ? 0 : 1;
 }

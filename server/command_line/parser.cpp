@@ -11,12 +11,12 @@ namespace {
 
 // Which spec sections a command takes: it offers no flag that cannot matter to it.
 const std::vector<std::string> kSceneSections = {"scene"};
-const std::vector<std::string> kPlanSections = {"budget_ms", "scene",      "camera",    "view_space", "visibility",
-                                                "lods",      "candidates", "impostors", "select",     "device",
-                                                "survey",    "verify",     "seed",      "force",      "threads"};
+const std::vector<std::string> kPlanSections = {"budget_ms",  "scene",     "camera",  "view_space", "visibility", "lods",
+                                                "candidates", "impostors", "select",  "device",     "survey",     "verify",
+                                                "seed",       "force",     "threads", "cache"};
 // Each budget is the command's own, and nothing is rendered.
 const std::vector<std::string> kSweepSections = {"scene",  "camera", "view_space", "visibility", "lods",  "candidates", "impostors",
-                                                 "select", "survey", "sweep",      "seed",       "force", "threads"};
+                                                 "select", "survey", "sweep",      "seed",       "force", "threads",    "cache"};
 const std::vector<std::string> kBakeSections = {"scene", "camera", "impostors", "device", "seed", "threads"};
 const std::vector<std::string> kTimingSections = {"scene", "camera", "device", "seed", "threads"};
 

@@ -3,10 +3,9 @@
 #include <algorithm>
 #include <atomic>
 
-#include "render/base/error.h"
 #include "render/base/parallel.h"
 #include "render/impostor/atlas.h"
-#include "render/impostor/technique.h"
+#include "server/cache/bake_cache.h"
 
 namespace standin {
 namespace {
@@ -24,9 +23,11 @@ std::uint32_t Baker::bake(const std::vector<std::uint32_t>& chosen, const WorkBu
   for (const auto id : chosen)
     if (!baked_.contains(id)) missing.push_back(id);
   std::vector<std::optional<Impostor>> fresh(missing.size());
+  const BakeCandidate bake =
+      through_cache(world_.bake_cache.get(), candidate_baker(world_.scene, textures_, world_.camera, world_.quality, budget));
   std::atomic<std::size_t> done{0};
   parallel_for(missing.size(), world_.threads, budget, [&](std::size_t i) {
-    fresh[i] = recall_or_bake(candidates_[missing[i]], budget);
+    fresh[i] = recall_or_bake(candidates_[missing[i]], bake);
     budget.report("bake", static_cast<double>(++done) / static_cast<double>(missing.size()));
   });
   for (std::size_t i = 0; i < missing.size(); ++i) keep(missing[i], std::move(fresh[i]));
@@ -39,23 +40,12 @@ double Baker::bytes(const std::vector<std::uint32_t>& chosen) const {
   return sum;
 }
 
-std::optional<Impostor> Baker::recall_or_bake(const Candidate& candidate, const WorkBudget& budget) const {
+std::optional<Impostor> Baker::recall_or_bake(const Candidate& candidate, const BakeCandidate& bake) const {
   if (memory_ != nullptr)
     if (auto known = memory_->recall(candidate)) return *std::move(known);
-  auto impostor = try_bake(candidate, budget);
+  auto impostor = bake(candidate);
   if (memory_ != nullptr) memory_->keep(candidate, impostor);
   return impostor;
-}
-
-// Nothing where the sketch was too hopeful: the recorded vertices need more layers than allowed.
-std::optional<Impostor> Baker::try_bake(const Candidate& candidate, const WorkBudget& budget) const {
-  try {
-    return bake_impostor(world_.scene, textures_, candidate.technique, {candidate.objects, candidate.view_cell}, world_.camera,
-                         world_.quality, budget);
-  } catch (const Failure& failure) {
-    if (failure.word() != ErrorWord::kImpostorImpossible) throw;
-    return std::nullopt;
-  }
 }
 
 void Baker::keep(std::uint32_t id, std::optional<Impostor> impostor) {

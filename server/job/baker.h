@@ -40,8 +40,7 @@ class Baker {
   [[nodiscard]] const std::vector<std::optional<BakedSize>>& sizes() const { return sizes_; }
 
  private:
-  [[nodiscard]] std::optional<Impostor> recall_or_bake(const Candidate& candidate, const WorkBudget& budget) const;
-  [[nodiscard]] std::optional<Impostor> try_bake(const Candidate& candidate, const WorkBudget& budget) const;
+  [[nodiscard]] std::optional<Impostor> recall_or_bake(const Candidate& candidate, const BakeCandidate& bake) const;
   void keep(std::uint32_t id, std::optional<Impostor> impostor);
 
   const World& world_;

@@ -2,6 +2,9 @@
 
 #include <limits>
 
+#include "render/impostor/texture_pyramid.h"
+#include "server/cache/bake_cache.h"
+
 namespace standin {
 namespace {
 
@@ -29,7 +32,10 @@ SizeModel fit_sizes(const Surveyed& job, const Subdivision& probe, Technique tec
                                          job.candidate_options, budget);
   keep_samples(technique, sizes.offers(Technique::kLayered), set.candidates);
   if (set.candidates.empty()) return default_size_model(technique);
-  return fit_size_model(world.scene, set.candidates, world.camera, world.quality, spec.size_bakes, spec.seed, world.threads, budget);
+  const TexturePyramids textures(world.scene);
+  const BakeCandidate bake =
+      through_cache(world.bake_cache.get(), candidate_baker(world.scene, textures, world.camera, world.quality, budget));
+  return fit_size_model(world.scene, set.candidates, world.camera, world.quality, spec.size_bakes, spec.seed, world.threads, budget, bake);
 }
 
 }  // namespace

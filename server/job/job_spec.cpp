@@ -193,6 +193,11 @@ std::vector<SpecField> make_fields() {
       field("force", "--force", &JobSpec::force, "stages that leave nothing out, also where that cannot change the result",
             {{"items", {{"type", "string"}, {"enum", {"all", "visibility", "lods", "candidates", "bake"}}}}}, false),
       field("threads", "--threads", &JobSpec::threads, "threads; 0: one per processor", between(0, 1024), false),
+      field("cache.folder", "--cache", &JobSpec::cache,
+            "folder of stages' results, each named by all that it depends on: what is there is not done again, what is not is added; "
+            "empty: none",
+            json::object(), false),
+      field("cache.update", "--update", &JobSpec::update, "delete what the job did not use from the cache's folder", json::object(), false),
   };
 }
 

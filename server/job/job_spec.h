@@ -75,6 +75,8 @@ struct JobSpec {
   std::uint64_t seed = 1;
   std::vector<std::string> force;  // stages that leave nothing out; "all": every one
   int threads = 0;                 // 0: one per processor; never part of a result
+  std::string cache;               // folder of results that outlive the job; empty: none; never part of a result
+  bool update = false;             // delete of it what this job does not use
 };
 
 struct SpecField {

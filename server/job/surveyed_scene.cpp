@@ -2,7 +2,9 @@
 
 #include <limits>
 
+#include "server/cache/search_cache.h"
 #include "server/job/fit_sizes.h"
+#include "server/job/job_cache.h"
 
 namespace standin {
 namespace {
@@ -30,6 +32,12 @@ void add_sizes(Surveyed& job, const JobSpec& spec, const Subdivision* problem, S
     job.sizes = clock.run("size_model", [&] { return fit_sizes(job, spec, budget); });
 }
 
+std::unique_ptr<SearchMemory> search_cache(const Surveyed& job) {
+  const World& world = job.world;
+  const SearchScene scene{world.scene, world.hierarchy.rank, world.visibility, job.target.model, world.camera, world.view_space_options};
+  return std::make_unique<SearchCache>(*job.cache, scene);
+}
+
 // What impostors could do for the worst views.
 void add_reach(Surveyed& job, const JobSpec& spec, const Subdivision* problem, StageClock& clock, const WorkBudget& budget) {
   const TimeModel& model = job.target.model;
@@ -49,8 +57,10 @@ void add_reach(Surveyed& job, const JobSpec& spec, const Subdivision* problem, S
 }  // namespace
 
 void load_job(const JobFiles& files, const JobSpec& spec, StageClock& clock, const WorkBudget& budget, Surveyed& job) {
+  job.cache = open_cache(spec, files.folder);
   job.target = read_target(files.target);
-  build_world(files.scene, spec, clock, budget, job.world);
+  build_world(files.scene, spec, clock, budget, job.world, job.cache.get());
+  if (job.cache != nullptr) job.searches = search_cache(job);
   job.candidate_options = candidate_options_of(spec, job.world.threads);
 }
 

@@ -9,6 +9,7 @@
 #include "estimation/time_model.h"
 #include "placement/candidates/candidates.h"
 #include "placement/view_space/survey.h"
+#include "server/cache/stage_cache.h"
 #include "server/job/job_files.h"
 #include "server/job/reach.h"
 #include "server/job/world.h"
@@ -19,6 +20,7 @@ namespace standin {
 inline constexpr const char* kNoProblemViews = "no problem views: every region's bound is within the budget";
 
 struct Surveyed {
+  std::unique_ptr<StageCache> cache;  // of results that outlive the job; none: none do
   World world;
   Target target;
   CandidateOptions candidate_options;
@@ -28,7 +30,7 @@ struct Surveyed {
   std::unique_ptr<SearchMemory> searches = std::make_unique<SearchMemory>();  // of all subdivisions so far; reset to free it
 };
 
-/// Stages load, view_space, visibility and lods.
+/// Stages load, view_space, visibility and lods. Opens the cache that `spec` names, if it does, before any work is done.
 void load_job(const JobFiles& files, const JobSpec& spec, StageClock& clock, const WorkBudget& budget, Surveyed& job);
 
 /// The regions whose predicted bound exceeds the budget. `leaves`: of these leaf cubes, sorted; empty: of all.

@@ -9,7 +9,7 @@
 #include "placement/view_space/cell_boxes.h"
 #include "render/base/error.h"
 #include "render/visibility/occlusion_probe.h"
-#include "render/visibility/visible_set_audit.h"
+#include "server/cache/visible_set_cache.h"
 
 namespace standin {
 namespace {
@@ -105,8 +105,8 @@ bool tells_anything(const Visibility& visibility, std::size_t objects) {
   return std::ranges::any_of(visibility.sets, [&](const auto& set) { return set.size() < objects; });
 }
 
-VisibilityFigures figures_of(const JobSpec& spec, const World& world, const std::vector<Box>& regions, const std::vector<VisibleSet>& sets,
-                             const WorkBudget& budget) {
+VisibilityFigures figures_of(const JobSpec& spec, const World& world, const VisibleSetCache& cache, const std::vector<Box>& regions,
+                             const std::vector<VisibleSet>& sets, const WorkBudget& budget) {
   VisibilityFigures figures;
   for (const VisibleSet& set : sets) {
     figures.highest_missed_share = std::max(figures.highest_missed_share, set.missed_share_bound);
@@ -115,21 +115,21 @@ VisibilityFigures figures_of(const JobSpec& spec, const World& world, const std:
   }
   VisibilityAuditOptions options;
   options.seed = spec.seed;
-  const VisibilityAudit audit =
-      audit_visible_sets(world.scene, *world.raytracer, regions, sets, world.camera, options, world.threads, budget);
+  const VisibilityAudit audit = cache.audit(regions, sets, world.camera, options, world.threads, budget);
   figures.mean_missed_share = audit.mean_missed_share_bound;
   figures.worst_view_share = audit.worst_view_share;
   figures.views = audit.views;
   return figures;
 }
 
-void add_visibility(const JobSpec& spec, World& world, StageClock& clock, const WorkBudget& budget) {
+void add_visibility(const JobSpec& spec, World& world, StageCache* stage_cache, StageClock& clock, const WorkBudget& budget) {
   const std::vector<CellKey> keys = leaf_keys(world.view_space);
   const std::vector<Box> regions = boxes_of(world.view_space, keys);
   if (!wants_visibility(spec, world, regions, clock)) return;
   const VisibilityOptions options{spec.visibility_rays, spec.visibility_missed_share, spec.seed};
-  auto sets = sample_visible_sets(world.scene, *world.raytracer, regions, options, world.threads, budget);
-  world.visible_sets = figures_of(spec, world, regions, sets, budget);
+  const VisibleSetCache cache(stage_cache, world.scene, *world.raytracer);
+  auto sets = cache.sets(regions, options, world.threads, budget);
+  world.visible_sets = figures_of(spec, world, cache, regions, sets, budget);
   world.visibility.cells = keys;
   for (auto& set : sets) world.visibility.sets.push_back(std::move(set.objects));
   if (!tells_anything(world.visibility, world.scene.objects.size())) world.visibility = {};
@@ -189,7 +189,8 @@ int thread_count(const JobSpec& spec) {
   return spec.threads > 0 ? spec.threads : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
 }
 
-void build_world(const std::filesystem::path& scene_file, const JobSpec& spec, StageClock& clock, const WorkBudget& budget, World& world) {
+void build_world(const std::filesystem::path& scene_file, const JobSpec& spec, StageClock& clock, const WorkBudget& budget, World& world,
+                 StageCache* cache) {
   world.threads = thread_count(spec);
   world.camera = camera_of(spec);
   world.view_space_options = view_space_options(spec);
@@ -202,10 +203,11 @@ void build_world(const std::filesystem::path& scene_file, const JobSpec& spec, S
     world.view_space = make_view_space(spec, world.scene, *world.raytracer, world.view_space_options);
   });
   for (const auto& sentence : world.view_space.left_out) clock.leave_out("view_space", sentence);
-  clock.run("visibility", [&] { add_visibility(spec, world, clock, budget); });
+  clock.run("visibility", [&] { add_visibility(spec, world, cache, clock, budget); });
   add_lods(spec, world, clock, budget);
   world.quality = quality_of(spec, world.view_space.kind);
   world.quality.leave_out = !forced(spec, "bake");
+  if (cache != nullptr) world.bake_cache = std::make_unique<BakeCache>(*cache, world.scene, world.camera, world.quality);
 }
 
 }  // namespace standin

@@ -10,6 +10,7 @@
 #include "render/scene/hierarchy.h"
 #include "render/scene/load.h"
 #include "render/visibility/raytracer.h"
+#include "server/cache/bake_cache.h"
 #include "server/job/job_spec.h"
 #include "server/job/lods.h"
 #include "server/job/stage_clock.h"
@@ -53,10 +54,12 @@ struct World {
   VisibilityFigures visible_sets;
   LodFigures lods;
   BakeQuality quality;
+  std::unique_ptr<BakeCache> bake_cache;  // none: what is baked is forgotten
   int threads = 1;
 };
 
-/// Stages load, view_space, visibility and lods.
-void build_world(const std::filesystem::path& scene_file, const JobSpec& spec, StageClock& clock, const WorkBudget& budget, World& world);
+/// Stages load, view_space, visibility and lods. `cache`: of visible sets and bakes, or none.
+void build_world(const std::filesystem::path& scene_file, const JobSpec& spec, StageClock& clock, const WorkBudget& budget, World& world,
+                 StageCache* cache = nullptr);
 
 }  // namespace standin

@@ -7,6 +7,7 @@
 #include "render/base/sha256.h"
 #include "render/base/staged_file.h"
 #include "server/files/output_folder.h"
+#include "server/job/job_cache.h"
 #include "server/job/metrics.h"
 #include "server/job/place_at_budget.h"
 #include "server/job/placement_metrics.h"
@@ -197,6 +198,7 @@ JobOutcome run_sweep(const JobFiles& files, const SweepGates& gate_files, const 
   JobOutcome outcome;
   json& sweep = outcome.metrics;
   sweep = common_metrics(job, clock);
+  close_cache(job.cache.get(), spec, sweep);
   sweep.merge_patch(to_json(subject));
   sweep["scene"]["sha256"] = job.world.scene.sha256;
   sweep["spec"] = to_json(spec, true);

@@ -105,6 +105,7 @@ void sample(const Arguments& arguments) {
   const std::vector<Candidate> candidates = candidates_of(world, model, arguments, clock);
   const ObjectOutlines outlines(world.scene);
   const TexturePyramids textures(world.scene);
+  const BakeCandidate bake = candidate_baker(world.scene, textures, world.camera, world.quality, budget);
   const SizeBound bound = clock.run("prepare_bounds", [&] { return SizeBound(world.scene); });
   clock.run("bounds", [&] {
     double sum = 0.0;
@@ -114,7 +115,7 @@ void sample(const Arguments& arguments) {
   });
   for (const std::uint32_t id : spread_of_candidates(candidates, arguments.count, arguments.spec.seed)) {
     const Candidate& candidate = candidates[id];
-    const auto baked = bake_size_sample(world.scene, outlines, textures, candidate, world.camera, world.quality, {});
+    const auto baked = bake_size_sample(world.scene, outlines, candidate, world.camera, world.quality, bake);
     const double least_bytes = bound.texture_bytes(candidate.objects, candidate.view_cell, world.camera, world.quality);
     if (baked) print_row({*baked, least_bytes});
   }

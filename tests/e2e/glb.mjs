@@ -1,5 +1,5 @@
-// Tiny scenes as GLB files, whole or broken in one way.
-import { writeFileSync } from "node:fs";
+// Tiny scenes as GLB files, whole or broken in one way, and edits of others.
+import { readFileSync, writeFileSync } from "node:fs";
 
 const pad = (bytes, fill) => Buffer.concat([bytes, Buffer.alloc((4 - (bytes.length % 4)) % 4, fill)]);
 
@@ -19,6 +19,14 @@ export function encodeGlb(json, binary = Buffer.alloc(0)) {
   head.writeUInt32LE(2, 4);
   head.writeUInt32LE(12 + body.length, 8);
   return Buffer.concat([head, body]);
+}
+
+/** {json, binary} of a file, for writeGlb. */
+export function readGlb(file) {
+  const bytes = readFileSync(file);
+  const jsonLength = bytes.readUInt32LE(12);
+  const json = JSON.parse(bytes.subarray(20, 20 + jsonLength).toString("utf8"));
+  return { json, binary: bytes.subarray(28 + jsonLength, 28 + jsonLength + bytes.readUInt32LE(20 + jsonLength)) };
 }
 
 /** One node with one mesh of unindexed triangles; `positions` is a flat list of numbers. */

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 
+#include "render/impostor/texture_pyramid.h"
 #include "tests/placement/candidates/toy_world.h"
 #include "tests/support/scene_builder.h"
 
@@ -176,10 +177,13 @@ TEST(SizeModel, FitsRealBakesTheSameOnAnyThreads) {
   }
   const auto set = world.generate();
   ASSERT_GT(set.candidates.size(), 12U);
-  const auto fit = fit_size_model(world.scene, set.candidates, world.camera, world.quality, 12, 1, 1, {});
+  const TexturePyramids textures(world.scene);
+  const WorkBudget budget;
+  const BakeCandidate bake = candidate_baker(world.scene, textures, world.camera, world.quality, budget);
+  const auto fit = fit_size_model(world.scene, set.candidates, world.camera, world.quality, 12, 1, 1, {}, bake);
   EXPECT_GE(fit.bakes, 6U);
   EXPECT_LT(fit.median_error, 0.2);
-  const auto again = fit_size_model(world.scene, set.candidates, world.camera, world.quality, 12, 1, 3, {});
+  const auto again = fit_size_model(world.scene, set.candidates, world.camera, world.quality, 12, 1, 3, {}, bake);
   EXPECT_EQ(fit.log_bytes, again.log_bytes);
   EXPECT_EQ(fit.log_texels, again.log_texels);
   EXPECT_EQ(fit.log_quads, again.log_quads);

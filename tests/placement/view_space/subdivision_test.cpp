@@ -139,11 +139,11 @@ TEST(Subdivision, MemoryOfOtherBudgetsChangesNothing) {
 TEST(SearchMemory, RecallsTheLastSearchOfACell) {
   SearchMemory memory;
   const CellKey cell{3, {1, 2, 3}};
-  EXPECT_EQ(memory.recall(cell), nullptr);
-  memory.keep(cell, 6.0, {});
-  memory.keep(cell, 5.0, {});
-  EXPECT_EQ(memory.recall(cell)->predicted_budget_ms, 5.0);
-  EXPECT_EQ(memory.recall({3, {1, 2, 4}}), nullptr);
+  EXPECT_EQ(memory.recall({cell, 6.0}), nullptr);
+  memory.keep({cell, 6.0}, {});
+  memory.keep({cell, 5.0}, {});
+  EXPECT_EQ(memory.recall({cell, 7.0})->predicted_budget_ms, 5.0);
+  EXPECT_EQ(memory.recall({{3, {1, 2, 4}}, 5.0}), nullptr);
 }
 
 TEST(DirectionSearch, ALooserBudgetKeepsWhatExceedsIt) {

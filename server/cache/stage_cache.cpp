@@ -1,0 +1,189 @@
+#include "server/cache/stage_cache.h"
+
+#include <signal.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <charconv>
+#include <cstring>
+#include <fstream>
+#include <utility>
+#include <vector>
+
+#include "render/base/staged_file.h"
+
+namespace standin {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kMagic = "standin\n";
+constexpr std::uint32_t kLayout = 1;
+constexpr std::string_view kPartial = ".partial-";
+
+std::string header_of(const Fingerprint& name, std::string_view payload) {
+  ByteWriter header;
+  header.raw(kMagic);
+  header.value(kLayout);
+  header.value(name);
+  header.value(std::uint64_t{payload.size()});
+  header.value(fingerprint_of(payload));
+  return header.bytes();
+}
+
+std::size_t header_size() {
+  static const std::size_t size = header_of({}, {}).size();
+  return size;
+}
+
+// The next `size` bytes; fewer where the file ends.
+std::string next_bytes(std::ifstream& stream, std::size_t size) {
+  std::string bytes(size, '\0');
+  stream.read(bytes.data(), static_cast<std::streamsize>(size));
+  bytes.resize(static_cast<std::size_t>(stream.gcount()));
+  return bytes;
+}
+
+// "": written. Errors of the stream hide theirs in errno.
+std::string write_whole(const fs::path& staged, const fs::path& file, std::string_view header, std::string_view payload) {
+  std::error_code error;
+  fs::create_directories(file.parent_path(), error);
+  if (error) return error.message();
+  errno = 0;
+  std::ofstream stream(staged, std::ios::binary | std::ios::trunc);
+  stream.write(header.data(), static_cast<std::streamsize>(header.size()));
+  stream.write(payload.data(), static_cast<std::streamsize>(payload.size()));
+  stream.close();
+  const int why = errno;
+  if (stream) fs::rename(staged, file, error);
+  if (stream && !error) return "";
+  std::error_code ignored;
+  fs::remove(staged, ignored);
+  return error ? error.message() : why != 0 ? std::strerror(why) : "it cannot be written";
+}
+
+bool is_entry_name(std::string_view name) {
+  return name.size() == 64 && name.find_first_not_of("0123456789abcdef") == std::string_view::npos;
+}
+
+// Of a file HEX.partial-COUNT-PROCESS that is being written, or was when its process was killed; 0: no such file.
+pid_t writer_of(std::string_view name) {
+  if (name.size() <= 64 + kPartial.size() || !is_entry_name(name.substr(0, 64)) || !name.substr(64).starts_with(kPartial)) return 0;
+  name.remove_prefix(name.rfind('-') + 1);
+  pid_t process = 0;
+  const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), process);
+  return error == std::errc() && end == name.data() + name.size() ? process : 0;
+}
+
+bool is_running(pid_t process) {
+  return ::kill(process, 0) == 0 || errno != ESRCH;
+}
+
+struct Entry {
+  fs::path file;
+  fs::path name;     // STAGE/HEX
+  pid_t writer = 0;  // of an unfinished one
+};
+
+// What in the folder is ours, whichever process wrote it.
+std::vector<Entry> entries_of(const fs::path& folder) {
+  std::vector<Entry> entries;
+  std::error_code error;
+  for (const auto& stage : fs::directory_iterator(folder, error)) {
+    if (!stage.is_directory(error)) continue;
+    for (const auto& file : fs::directory_iterator(stage.path(), error)) {
+      const std::string name = file.path().filename().string();
+      const pid_t writer = writer_of(name);
+      if (is_entry_name(name) || writer > 0) entries.push_back({file.path(), stage.path().filename() / name, writer});
+    }
+  }
+  return entries;
+}
+
+// Throws where a file cannot be made in the folder, with the reason.
+void require_writable(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  std::string why = error ? error.message() : "";
+  const fs::path probe = staged_path(folder / "probe");
+  if (why.empty()) why = write_whole(probe, folder / ("probe-" + std::to_string(::getpid())), "", "");
+  if (!why.empty()) throw Failure(ErrorWord::kBadUsage, "--cache " + folder.string() + " cannot be written to: " + why);
+  fs::remove(folder / ("probe-" + std::to_string(::getpid())), error);
+}
+
+}  // namespace
+
+StageCache::StageCache(fs::path folder, const Fingerprint& build) : folder_(std::move(folder)), build_(build) {
+  require_writable(folder_);
+}
+
+Fingerprint StageCache::name_of(const CacheStage& stage, const Fingerprint& inputs) const {
+  return Fingerprinter().add(build_).add(stage.name).add(stage.format).add(inputs).fingerprint();
+}
+
+fs::path StageCache::file_of(const CacheStage& stage, const Fingerprint& inputs) const {
+  return folder_ / stage.name / name_of(stage, inputs).hex();
+}
+
+// No more is read than the file can hold, whatever it says.
+std::optional<std::string> StageCache::read(const CacheStage& stage, const Fingerprint& name) const {
+  const fs::path file = folder_ / stage.name / name.hex();
+  std::error_code error;
+  const auto size = fs::file_size(file, error);  // an error for what is no file
+  if (error || size < header_size()) return std::nullopt;
+  std::ifstream stream(file, std::ios::binary);
+  const std::string header = next_bytes(stream, header_size());
+  std::string payload = next_bytes(stream, size - header_size());
+  if (header != header_of(name, payload)) return std::nullopt;
+  return payload;
+}
+
+void StageCache::keep(const CacheStage& stage, const Fingerprint& inputs, std::string_view payload) {
+  const Fingerprint name = name_of(stage, inputs);
+  const fs::path file = folder_ / stage.name / name.hex();
+  const fs::path staged = staged_path(file, std::string(kPartial) + std::to_string(staged_++) + "-");
+  const std::string why_not = write_whole(staged, file, header_of(name, payload), payload);
+  note_kept(stage, name, header_size() + payload.size(), why_not);
+}
+
+void StageCache::note_hit(const CacheStage& stage, const Fingerprint& name, std::size_t bytes, bool counts) {
+  const std::scoped_lock lock(mutex_);
+  CacheCounts& of = figures_.stages[std::string(stage.name)];
+  of.hits += counts ? 1 : 0;
+  of.bytes_read += header_size() + bytes;
+  used_.insert(fs::path(stage.name) / name.hex());
+}
+
+void StageCache::note_kept(const CacheStage& stage, const Fingerprint& name, std::size_t bytes, const std::string& why_not) {
+  const std::scoped_lock lock(mutex_);
+  CacheCounts& of = figures_.stages[std::string(stage.name)];
+  ++of.misses;
+  if (why_not.empty()) {
+    of.bytes_written += bytes;
+    used_.insert(fs::path(stage.name) / name.hex());
+  } else if (figures_.write_failures++ == 0) {
+    figures_.why_not_written = why_not;
+  }
+}
+
+void StageCache::remove_unused() {
+  const std::scoped_lock lock(mutex_);
+  for (const Entry& entry : entries_of(folder_)) {
+    if (used_.contains(entry.name) || (entry.writer > 0 && is_running(entry.writer))) continue;
+    std::error_code error;
+    if (fs::remove(entry.file, error)) ++figures_.removed_entries;
+  }
+}
+
+CacheFigures StageCache::figures() const {
+  const std::scoped_lock lock(mutex_);
+  CacheFigures figures = figures_;
+  for (const Entry& entry : entries_of(folder_)) {
+    std::error_code error;
+    const auto bytes = fs::file_size(entry.file, error);
+    if (!error) figures.folder_bytes += bytes;
+  }
+  return figures;
+}
+
+}  // namespace standin
