@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "render/scene/level_file.h"
 #include "render/scene/object_levels.h"
 #include "render/view/camera.h"
 #include "server/job/job_spec.h"
@@ -20,13 +21,15 @@ struct LodFigures {
   bool used = false;
   LevelSummary levels;
   double saved_share = 0.0;  // of the triangles that cells show, mean over the view space's leaves
-  std::string glb;           // lods.glb; empty where no levels are used
+  LevelFile file;            // lods.glb; empty where no levels are used
   std::string sha256;        // of it
 };
 
 [[nodiscard]] LevelOptions level_options(const JobSpec& spec, const Camera& camera, int threads);
 /// Stage lods: gives the world's scene its levels, or takes away those it came with. Needs the view space and the visible sets.
 void add_lods(const JobSpec& spec, World& world, StageClock& clock, const WorkBudget& budget);
+/// Takes the levels away again, and says why.
+void leave_lods_out(const std::string& why, const JobSpec& spec, World& world, StageClock& clock);
 /// metrics.json: lods
 [[nodiscard]] nlohmann::json lods_json(const LodFigures& figures);
 
