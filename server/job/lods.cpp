@@ -17,7 +17,7 @@ namespace {
 constexpr double kWorthwhile = 0.05;
 constexpr std::size_t kMostCells = 256;
 // What a byte must save of a frame's triangles, mean over the leaves (tests/bench/lods.md).
-const double kTrianglesPerByte = getenv("TPB") ? atof(getenv("TPB")) : 0.0;
+constexpr double kTrianglesPerByte = 0.1;
 
 /// Calls see(object id, level) for all that leaves, spread evenly through the view space, see; returns how many leaves.
 template <class See>
@@ -113,6 +113,10 @@ void ship(const LevelsAsLoaded& before, World& world) {
   read_levels(stated, lods.file.glb, world.scene);
 }
 
+bool has_levels(const Object& object) {
+  return !object.levels.empty();
+}
+
 /// Says why not, where levels are not worth it.
 std::string give_levels(const JobSpec& spec, World& world, const WorkBudget& budget) {
   const LevelOptions options = level_options(spec, world.camera, world.threads);
@@ -123,10 +127,12 @@ std::string give_levels(const JobSpec& spec, World& world, const WorkBudget& bud
   LodFigures& lods = world.lods;
   const LevelsAsLoaded before(world.scene);
   lods.levels = add_object_levels(world.scene, options, budget);
-  lods.saved_share = saved_share(world);
   if (lods.levels.objects == 0) return "no object has a simpler form";
-  if (lods.saved_share < kWorthwhile && !asked_for) return too_little(lods.saved_share);
   keep_what_is_worth_its_bytes(world);
+  lods.levels.objects = static_cast<std::uint32_t>(std::ranges::count_if(world.scene.objects, has_levels));
+  lods.saved_share = saved_share(world);
+  if (lods.levels.objects == 0) return "simpler meshes would weigh more than they save";
+  if (lods.saved_share < kWorthwhile && !asked_for) return too_little(lods.saved_share);
   lods.used = true;
   ship(before, world);
   return "";
