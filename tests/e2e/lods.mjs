@@ -13,6 +13,17 @@ const gltfOf = (file) => {
   const bytes = readFileSync(file);
   return JSON.parse(bytes.subarray(20, 20 + bytes.readUInt32LE(12)));
 };
+const NUMBERS = { 5123: Uint16Array, 5125: Uint32Array, 5126: Float32Array };
+/** A GLB's JSON, and the numbers of its accessors. */
+const reader = (file) => {
+  const bytes = readFileSync(file), gltf = gltfOf(file), first = 20 + bytes.readUInt32LE(12) + 8;
+  const numbers = (id, components) => {
+    const { bufferView, byteOffset = 0, componentType, count } = gltf.accessors[id], view = gltf.bufferViews[bufferView];
+    const at = first + (view.byteOffset || 0) + byteOffset, Numbers = NUMBERS[componentType];
+    return new Numbers(bytes.buffer.slice(bytes.byteOffset + at, bytes.byteOffset + at + count * components * Numbers.BYTES_PER_ELEMENT));
+  };
+  return { gltf, numbers };
+};
 const survey = (name, ...flags) => {
   expectExit(0, "survey", city, ...smallJob, ...flags, "-o", join(folder, name));
   return readJson(join(folder, name, "metrics.json"));
@@ -55,6 +66,35 @@ test("placement.json names them, lods.glb holds them, and the schema and the Khr
       if (k > 0) assert.ok(level.triangles < levels[k - 1].triangles && level.least_distance > levels[k - 1].least_distance);
     });
   }
+});
+
+// As a viewer of the two files does it, with none of our code: the scene's vertices, the level's corners, the object's node.
+test("put together with the scene's vertices, levels fill the bounds of their objects", () => {
+  const scene = reader(city), levelFile = reader(join(placed.out, "lods.glb"));
+  const nodesOf = new Map(scene.gltf.nodes.map((node) => [node.name, node]));
+  let seen = 0;
+  for (const { object, levels } of placed.placement.lods.objects) {
+    const { gltf_node, bounds } = placed.placement.scene.objects[object];
+    for (const { gltf_node: name, error } of levels) {
+      const min = [Infinity, Infinity, Infinity], max = [-Infinity, -Infinity, -Infinity];
+      for (const { indices, extras } of levelFile.gltf.meshes[levelFile.gltf.nodes.find((node) => node.name === name).mesh].primitives) {
+        const own = scene.gltf.meshes[extras.scene_mesh].primitives[extras.scene_primitive], places = scene.numbers(own.attributes.POSITION, 3);
+        for (const corner of indices === undefined ? scene.numbers(own.indices, 1) : levelFile.numbers(indices, 1)) {
+          const m = nodesOf.get(gltf_node).matrix, [x, y, z] = places.subarray(3 * corner, 3 * corner + 3);
+          for (const a of [0, 1, 2]) {
+            const at = m[a] * x + m[4 + a] * y + m[8 + a] * z + m[12 + a];
+            [min[a], max[a]] = [Math.min(min[a], at), Math.max(max[a], at)];
+          }
+        }
+      }
+      for (const a of [0, 1, 2]) {
+        assert.ok(Math.abs(min[a] - bounds.min[a]) <= error + 1e-3, `${name} of object ${object}: ${min} against ${bounds.min}, error ${error}`);
+        assert.ok(Math.abs(max[a] - bounds.max[a]) <= error + 1e-3, `${name} of object ${object}: ${max} against ${bounds.max}, error ${error}`);
+      }
+      ++seen;
+    }
+  }
+  assert.ok(seen > 0);
 });
 
 test("lods.glb holds the corners of triangles and nothing else, and they count", () => {
