@@ -52,34 +52,34 @@ double bytes_of(const Scene& scene, const ObjectLevel& level) {
   return bytes;
 }
 
+/// The parts that an object and its levels begin with: those of instances are the same.
+std::vector<std::uint32_t> forms_of(const Object& object) {
+  std::vector<std::uint32_t> forms{object.first_part};
+  for (const ObjectLevel& level : object.levels) forms.push_back(level.first_part);
+  return forms;
+}
+
+std::vector<std::size_t> worth_keeping(const Scene& scene, const Object& object, const std::vector<double>& shown) {
+  std::vector<LevelWorth> worth;
+  for (std::size_t k = 0; k < object.levels.size(); ++k)
+    worth.push_back({static_cast<double>(object.levels[k].triangle_count), bytes_of(scene, object.levels[k]), shown[k + 1]});
+  return levels_worth_keeping(static_cast<double>(object.triangle_count), worth, kTrianglesPerByte);
+}
+
 /// Instances share their levels, so they keep the same ones: what all of them save counts.
 void keep_what_is_worth_its_bytes(World& world) {
-  using Range = std::pair<std::uint32_t, std::uint32_t>;
   std::vector<Object>& objects = world.scene.objects;
-  const auto range_of = [&](std::uint32_t id) { return Range{objects[id].first_part, objects[id].part_count}; };
-  std::map<Range, std::vector<double>> shown;  // by level, the objects' own parts first
-  const std::size_t leaves = look_around(world, [&](std::uint32_t id, std::uint32_t level) {
-    if (objects[id].levels.empty()) return;
-    std::vector<double>& times = shown[range_of(id)];
-    times.resize(objects[id].levels.size() + 1);
-    times[level] += 1.0;
-  });
-  std::map<Range, std::vector<std::size_t>> kept;
+  std::map<std::vector<std::uint32_t>, std::vector<double>> shown;  // times a frame by level, the objects' own parts first
+  for (const Object& object : objects) shown[forms_of(object)].resize(object.levels.size() + 1);
+  std::vector<std::vector<double>*> of_object;
+  for (const Object& object : objects) of_object.push_back(&shown[forms_of(object)]);
+  const std::size_t leaves = look_around(world, [&](std::uint32_t id, std::uint32_t level) { (*of_object[id])[level] += 1.0; });
+  for (auto& [forms, times] : shown)
+    for (double& often : times) often /= static_cast<double>(leaves);
   for (std::uint32_t id = 0; id < objects.size(); ++id) {
-    if (objects[id].levels.empty()) continue;
-    const auto [known, fresh] = kept.try_emplace(range_of(id));
-    if (const auto times = shown.find(range_of(id)); fresh && times != shown.end()) {
-      std::vector<LevelWorth> worth;
-      for (std::size_t k = 0; k < objects[id].levels.size(); ++k) {
-        const ObjectLevel& level = objects[id].levels[k];
-        worth.push_back(
-            {static_cast<double>(level.triangle_count), bytes_of(world.scene, level), times->second[k + 1] / static_cast<double>(leaves)});
-      }
-      known->second = levels_worth_keeping(static_cast<double>(objects[id].triangle_count), worth, kTrianglesPerByte);
-    }
-    std::vector<ObjectLevel> levels;
-    for (const std::size_t k : known->second) levels.push_back(objects[id].levels[k]);
-    objects[id].levels = std::move(levels);
+    std::vector<ObjectLevel> kept;
+    for (const std::size_t k : worth_keeping(world.scene, objects[id], *of_object[id])) kept.push_back(objects[id].levels[k]);
+    objects[id].levels = std::move(kept);
   }
 }
 

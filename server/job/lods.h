@@ -1,7 +1,8 @@
 // A job's levels of detail: whether the scene gains by them, and the file that ships them (thesis 5.5.1).
 //
 // A quick look decides: simplified without measuring errors, how many triangles fewer do the view space's cells show? Only where that is
-// worth it are errors bounded.
+// worth it are errors bounded. Of the levels then made those stay that save a frame more triangles than their bytes are worth; the file is
+// written, and read again: the job goes on with what it holds.
 #pragma once
 
 #include <nlohmann/json.hpp>
