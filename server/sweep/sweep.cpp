@@ -99,7 +99,9 @@ SweptPoint sweep_budget(Surveyed& job, JobSpec spec, double budget_ms, BakeMemor
   Placed placed;
   clock.run("view_space", [&] {
     placed.subdivision = problem_views(job, job.target.model.predicted_budget_ms(budget_ms), budget);
-    placed.shows_levels = job.world.lods.used && !levels_in_vain(job, spec, placed.subdivision, budget);
+    auto without = levels_in_vain(job, spec, placed.subdivision, budget);
+    placed.shows_levels = job.world.lods.used && !without;
+    if (without) placed.subdivision = *std::move(without);
   });
   if (job.world.lods.used && !placed.shows_levels && !forced(spec, "lods")) clock.leave_out("lods", kLevelsInVain);
   place_at_budget(job, spec, placed, &bakes, clock, budget);
