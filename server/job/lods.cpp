@@ -17,7 +17,7 @@ namespace {
 constexpr double kWorthwhile = 0.05;
 constexpr std::size_t kMostCells = 256;
 // What a byte must save of a frame's triangles, mean over the leaves (tests/bench/lods.md).
-constexpr double kTrianglesPerByte = 0.1;
+constexpr double kTrianglesPerByte = 0.03;
 
 /// Calls see(object id, level) for all that leaves, spread evenly through the view space, see; returns how many leaves.
 template <class See>
