@@ -41,6 +41,19 @@ json curves_json(const Surveyed& job, const JobSpec& spec, const Subdivision& su
           {"bake", bake_curve(world, impostors, budget)}};
 }
 
+// Levels of detail that nobody needs at this budget go before anything else is done.
+void find_problem_views(Surveyed& job, const JobSpec& spec, Placed& placed, StageClock& clock, const WorkBudget& budget) {
+  clock.run("view_space", [&] {
+    placed.subdivision = problem_views(job, job.target.model.predicted_budget_ms(spec.budget_ms), budget);
+    if (auto without = levels_in_vain(job, spec, placed.subdivision, budget)) {
+      placed.subdivision = *std::move(without);
+      leave_lods_out(kLevelsInVain, spec, job.world, clock);
+      job.searches = std::make_unique<SearchMemory>();  // what was searched had levels
+    }
+  });
+  placed.shows_levels = job.world.lods.used;
+}
+
 VerifyResult verify(const Surveyed& job, const Placed& placed, const JobSpec& spec, const WorkBudget& budget) {
   const World& world = job.world;
   const double alpha_rad = world.quality.alpha_scale * world.camera.pixel_angle_rad();
@@ -84,8 +97,7 @@ JobOutcome run_place(const JobFiles& files, const JobSpec& spec, const WorkBudge
   Surveyed job;
   Placed placed;
   load_job(files, spec, clock, budget, job);
-  placed.subdivision =
-      clock.run("view_space", [&] { return problem_views(job, job.target.model.predicted_budget_ms(spec.budget_ms), budget); });
+  find_problem_views(job, spec, placed, clock, budget);
   survey_scene(job, spec, &placed.subdivision, clock, budget);
   job.reach.subdivision = {};  // as large as the problem views, and only the survey asks for it
   job.searches.reset();
@@ -105,7 +117,7 @@ JobOutcome run_place(const JobFiles& files, const JobSpec& spec, const WorkBudge
   metrics["candidates"] = candidates_json(placed.candidates);
   metrics["impostors"] = impostor_counts(placed.placement);
   metrics["select"] = select_metrics(placed.selected, placed.placement);
-  metrics["memory"] = memory_json(placed.placement, placed.set);
+  metrics["memory"] = memory_json(placed, job.world.lods);
   metrics["memory"]["gpu_bytes"] = gpu_bytes_json(placed.set.pages);
   metrics["memory"]["gpu_compression"] = std::move(gpu_compression);
   metrics["bound"] = bound_json(placed.selected);
@@ -119,7 +131,7 @@ JobOutcome run_place(const JobFiles& files, const JobSpec& spec, const WorkBudge
   folder.write(kInputsFile, inputs_json(files));
   folder.write("placement.json", placement.dump());
   folder.write("impostors.glb", placed.glb);
-  if (job.world.lods.used) folder.write("lods.glb", job.world.lods.glb);
+  if (placed.shows_levels) folder.write("lods.glb", job.world.lods.file.glb);
   folder.write("metrics.json", metrics.dump(1));
   folder.write("report.html", make_report(metrics, placement, report_pictures(verified, placed.set)));
   folder.commit();

@@ -1,6 +1,7 @@
 #include "placement/check/check.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -12,6 +13,7 @@
 #include "placement/view_space/region_bound.h"
 #include "render/base/error.h"
 #include "render/base/parallel.h"
+#include "render/scene/level_errors.h"
 
 namespace standin {
 namespace {
@@ -50,9 +52,11 @@ class Checker {
     return findings;
   }
 
-  // Bounds are those of the scene's levels, so what is shown must be these.
-  [[nodiscard]] std::vector<Finding> check_levels() const {
+  // Bounds are those of the scene's levels, so what is shown must be these, and no farther off than they say.
+  [[nodiscard]] std::vector<Finding> check_levels(const WorkBudget& budget) const {
     std::vector<Finding> findings;
+    for (const LevelFault& fault : level_faults(input_.scene, input_.levels, budget))
+      findings.push_back({Violation::kLevels, fault.object, fault.sentence});
     const auto report = [&](std::size_t object, const std::string& what) {
       findings.push_back({Violation::kLevels, static_cast<std::uint32_t>(object), "object " + std::to_string(object) + ": " + what});
     };
@@ -248,7 +252,9 @@ CheckReport check_placement(const CheckInput& input, const Placement& placement,
   }
   report.regions = std::accumulate(regions.begin(), regions.end(), std::uint64_t{0}) + report.cpvs;
   report.findings = checker.check_impostors();
-  const std::vector<Finding> of_levels = checker.check_levels();
+  const auto start = std::chrono::steady_clock::now();
+  const std::vector<Finding> of_levels = checker.check_levels(budget);
+  report.levels_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   report.findings.insert(report.findings.end(), of_levels.begin(), of_levels.end());
   for (auto& of_cell : findings) report.findings.insert(report.findings.end(), of_cell.begin(), of_cell.end());
   return report;

@@ -12,6 +12,7 @@
 #include "placement/runtime/placement.h"
 #include "placement/view_space/view_space.h"
 #include "render/base/work.h"
+#include "render/scene/object_levels.h"
 
 namespace standin {
 
@@ -24,7 +25,7 @@ enum class Violation {
   kNotDisjoint,      // two impostors of a CPV stand for the same object
   kNotEnclosed,      // a CPV's cell is not inside its impostor's view cell
   kMissingRegion,    // a leaf region over budget that no CPV lists
-  kLevels,           // an object's levels of detail are not those of the scene, or shown from elsewhere
+  kLevels,           // an object's levels of detail are not those of the scene, lie farther off than stated, or are shown from too near
   kLayerInViewCell,  // an eye in an impostor's view cell may reach one of its layers: it has no bound
 };
 [[nodiscard]] const char* violation_name(Violation violation);
@@ -44,6 +45,7 @@ struct CheckInput {
   const ViewSpaceOptions& view_space_options;
   double budget_ms;
   std::uint32_t atlas_pages;  // a texture switch each, charged to every region that draws an impostor
+  LevelOptions levels = {};  // where the scene has levels of detail
 };
 
 struct CheckReport {
@@ -53,6 +55,7 @@ struct CheckReport {
   std::uint64_t texture_bytes = 0;
   std::uint64_t geometry_bytes = 0;
   double worst_bound_after_ms = 0.0;  // over all CPVs
+  double levels_s = 0.0;              // that bounding the errors of levels of detail took
   std::vector<Finding> findings;      // by impostor, then cell and its CPVs; empty: the placement keeps its promises
 };
 

@@ -67,6 +67,16 @@ void gather(std::vector<T>& values, const std::vector<std::uint32_t>& kept) {
   values = std::move(result);
 }
 
+void keep_vertices(Mesh& mesh, const std::vector<std::uint32_t>& kept) {
+  gather(mesh.positions, kept);
+  gather(mesh.normals, kept);
+  gather(mesh.uvs, kept);
+  if (mesh.source.empty())
+    mesh.source = kept;
+  else
+    gather(mesh.source, kept);
+}
+
 // Vertices no triangle uses would widen the bounds.
 void drop_unused_vertices(Mesh& mesh) {
   constexpr auto kUnused = std::numeric_limits<std::uint32_t>::max();
@@ -80,9 +90,7 @@ void drop_unused_vertices(Mesh& mesh) {
   }
   if (kept.size() == mesh.positions.size()) return;
   for (std::uint32_t& i : mesh.indices) i = place[i];
-  gather(mesh.positions, kept);
-  gather(mesh.normals, kept);
-  gather(mesh.uvs, kept);
+  keep_vertices(mesh, kept);
 }
 
 glm::vec3 face_normal(const Mesh& mesh, std::size_t triangle) {
@@ -95,8 +103,7 @@ glm::vec3 face_normal(const Mesh& mesh, std::size_t triangle) {
 // Three vertices of its own for each triangle.
 void make_flat_normals(Mesh& mesh) {
   const std::vector<std::uint32_t> corners = std::move(mesh.indices);
-  gather(mesh.positions, corners);
-  gather(mesh.uvs, corners);
+  keep_vertices(mesh, corners);
   mesh.indices.resize(corners.size());
   mesh.normals.resize(corners.size());
   for (std::uint32_t i = 0; i < mesh.indices.size(); ++i) mesh.indices[i] = i;

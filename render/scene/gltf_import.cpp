@@ -245,14 +245,15 @@ class GltfReader {
     PartRange range{static_cast<std::uint32_t>(scene_.parts.size()), 0};
     const std::string name = text(json, "name", "mesh_" + std::to_string(mesh));
     for (std::size_t p = 0; p < count; ++p) {
-      add_part((*primitives)[p], name, place + ".primitives[" + std::to_string(p) + "]");
+      add_part((*primitives)[p], name, {mesh, p}, place + ".primitives[" + std::to_string(p) + "]");
     }
     range.count = static_cast<std::uint32_t>(scene_.parts.size()) - range.first;
     part_ranges_.emplace(mesh, range);
     return range;
   }
 
-  void add_part(const Json& primitive, const std::string& name, const std::string& place) {
+  void add_part(const Json& primitive, const std::string& name, const std::pair<std::uint64_t, std::size_t>& number,
+                const std::string& place) {
     const auto mode = static_cast<Mode>(whole_number(primitive, "mode", place).value_or(4));
     if (mode != Mode::kTriangles && mode != Mode::kStrip && mode != Mode::kFan) {
       add_note(scene_, Kind::kDropped, "primitives", 1, "points and lines are not drawn");
@@ -266,7 +267,8 @@ class GltfReader {
     }
     add_note(scene_, Kind::kWarning, "primitives", member(primitive, "targets") != nullptr ? 1 : 0, "morph targets are not applied");
     const GltfMaterial& material = materials_.material(whole_number(primitive, "material", place));
-    if (const auto mesh = mesh_of(primitive, *attributes, mode, material, name, place)) scene_.parts.push_back({*mesh, material.index});
+    if (const auto mesh = mesh_of(primitive, *attributes, mode, material, name, place))
+      scene_.parts.push_back({*mesh, material.index, static_cast<std::int32_t>(number.first), static_cast<std::uint32_t>(number.second)});
   }
 
   // Primitives that differ in their material only share a mesh.

@@ -9,9 +9,7 @@
 #pragma once
 
 #include <cstdint>
-#include <map>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "render/base/work.h"
@@ -36,15 +34,31 @@ struct LevelSummary {
 
 /// Fills in Object::levels, adding meshes and parts. The same for any number of threads.
 LevelSummary add_object_levels(Scene& scene, const LevelOptions& options, const WorkBudget& budget);
-/// Takes away what add_object_levels() made, or also the file's own levels.
-void remove_simplified_levels(Scene& scene);
-void remove_all_levels(Scene& scene);
 
-/// Numbers of all levels, as their (first part, number of parts): instances share them.
-using LevelNumbers = std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t>;
-[[nodiscard]] LevelNumbers number_levels(const Scene& scene);
-/// One object for each level, by number, named lod_0, lod_1 ..., untransformed: what ships beside the scene.
-[[nodiscard]] Scene scene_of_levels(const Scene& scene);
+/// A scene before it was given levels, to come back to.
+class LevelsAsLoaded {
+ public:
+  explicit LevelsAsLoaded(const Scene& scene);
+  void restore(Scene& scene) const;
+
+ private:
+  std::size_t parts_ = 0;
+  std::size_t meshes_ = 0;
+  std::vector<std::vector<ObjectLevel>> levels_;
+};
+
+/// Of the levels of one range of parts, finest first: what drawing one costs, what keeping it costs, how often it is drawn.
+struct LevelWorth {
+  double triangles = 0.0;
+  double bytes = 0.0;
+  double shown = 0.0;  // times a frame that a cell shows this very level, if all are kept
+};
+/// Which to keep, ascending, so that the triangles saved a frame, less `triangles_per_byte` for what is kept, are most. `whole`: triangles
+/// of the object's own parts. A frame shows the coarsest kept level that is no coarser than what it might show.
+[[nodiscard]] std::vector<std::size_t> levels_worth_keeping(double whole, std::span<const LevelWorth> levels, double triangles_per_byte);
+
+/// Takes away what add_object_levels() or the file gave, so that objects are drawn as they are.
+void remove_all_levels(Scene& scene);
 
 /// The coarsest level that may be shown to eyes no nearer to the object's bounds than `distance_m`.
 [[nodiscard]] inline std::uint32_t level_at(const Object& object, double distance_m) {

@@ -119,7 +119,10 @@ void prune(Scene& scene) {
   meshes.compact(scene.meshes);
   materials.compact(scene.materials);
   textures.compact(scene.textures);
-  for (Part& part : scene.parts) part = {meshes[part.mesh], materials[part.material]};
+  for (Part& part : scene.parts) {
+    part.mesh = meshes[part.mesh];
+    part.material = materials[part.material];
+  }
   for (Material& material : scene.materials) {
     if (material.texture >= 0) material.texture = static_cast<std::int32_t>(textures[static_cast<std::size_t>(material.texture)]);
   }

@@ -46,12 +46,16 @@ struct Mesh {
   Box bounds;                          // of positions, in mesh space
   double area_m2 = 0.0;                // sum of the triangles' areas, in mesh space
   std::int32_t simplified_from = -1;   // the mesh of the scene that this one stands in for (object_levels.h), -1: none
+  std::vector<std::uint32_t>
+      source;  // per vertex: its number in what the mesh was made from: that mesh, else the file's primitive; empty: the same
   [[nodiscard]] std::size_t triangle_count() const { return indices.size() / 3; }
 };
 
 struct Part {
   std::uint32_t mesh = 0;
   std::uint32_t material = 0;
+  std::int32_t gltf_mesh = -1;  // of the file, and its primitive: what a viewer of the file draws it as; -1: the file is no glTF
+  std::uint32_t gltf_primitive = 0;
 };
 
 /// A simpler form of an object: parts drawn in place of its own where no eye is nearer to the object's bounds than `least_distance_m`.

@@ -33,7 +33,9 @@ struct Joined {
 Joined join(const Mesh& mesh) {
   Joined joined;
   joined.id.resize(mesh.positions.size());
-  std::vector<meshopt_Stream> streams{{mesh.positions.data(), sizeof(glm::vec3), sizeof(glm::vec3)}};
+  std::vector<glm::vec3> places;
+  for (const glm::vec3& position : mesh.positions) places.push_back(position + 0.0F);  // bits are compared, and -0 is 0
+  std::vector<meshopt_Stream> streams{{places.data(), sizeof(glm::vec3), sizeof(glm::vec3)}};
   if (!mesh.uvs.empty()) streams.push_back({mesh.uvs.data(), sizeof(glm::vec2), sizeof(glm::vec2)});
   const std::size_t count = meshopt_generateVertexRemapMulti(joined.id.data(), mesh.indices.data(), mesh.indices.size(),
                                                              mesh.positions.size(), streams.data(), streams.size());
@@ -42,7 +44,7 @@ Joined join(const Mesh& mesh) {
   for (std::uint32_t v = 0; v < joined.id.size(); ++v) {
     if (joined.id[v] >= count) continue;  // a vertex that no triangle uses
     joined.members[joined.id[v]].push_back(v);
-    joined.positions[joined.id[v]] = mesh.positions[v];
+    joined.positions[joined.id[v]] = places[v];
   }
   for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
     const Corners c{joined.id[mesh.indices[i]], joined.id[mesh.indices[i + 1]], joined.id[mesh.indices[i + 2]]};
@@ -66,42 +68,6 @@ Collapsed collapsed(const Joined& joined, double error_m, bool lock_border) {
                                          joined.positions.size(), sizeof(glm::vec3), 0, static_cast<float>(error_m) / scale, options,
                                          &relative));
   result.estimated_error_m = static_cast<double>(relative * scale);
-  return result;
-}
-
-/// Of the vertices at one place, the one whose normal is nearest to the triangle's; sides do not matter, as shading has none.
-std::uint32_t best_member(const Mesh& mesh, const std::vector<std::uint32_t>& members, const Vec3& normal) {
-  std::uint32_t best = members.front();
-  double most = -1.0;
-  for (const std::uint32_t v : members) {
-    const double along = std::abs(glm::dot(Vec3(mesh.normals[v]), normal));
-    if (along > most) {
-      most = along;
-      best = v;
-    }
-  }
-  return best;
-}
-
-Mesh mesh_of(const Mesh& mesh, const Joined& joined, const std::vector<std::uint32_t>& indices) {
-  Mesh result;
-  result.name = mesh.name;
-  std::vector<std::uint32_t> place(mesh.positions.size(), 0xFFFFFFFFU);
-  for (std::size_t i = 0; i < indices.size(); i += 3) {
-    const auto corner = [&](std::size_t c) { return Vec3(joined.positions[indices[i + c]]); };
-    const Vec3 normal = glm::cross(corner(1) - corner(0), corner(2) - corner(0));
-    for (std::size_t c = 0; c < 3; ++c) {
-      const std::uint32_t v = best_member(mesh, joined.members[indices[i + c]], normal);
-      if (place[v] == 0xFFFFFFFFU) {
-        place[v] = static_cast<std::uint32_t>(result.positions.size());
-        result.positions.push_back(mesh.positions[v]);
-        result.normals.push_back(mesh.normals[v]);
-        if (!mesh.uvs.empty()) result.uvs.push_back(mesh.uvs[v]);
-      }
-      result.indices.push_back(place[v]);
-    }
-  }
-  update_derived(result);
   return result;
 }
 
@@ -168,13 +134,13 @@ class Original {
   [[nodiscard]] const Joined& joined() const { return joined_; }
 
   [[nodiscard]] SimplifiedMesh estimated(const Collapsed& simple) const {
-    return {mesh_of(mesh_, joined_, simple.indices), simple.estimated_error_m, simple.estimated_error_m, 0};
+    return {mesh_over(mesh_, joined_.members, simple.indices), simple.estimated_error_m, simple.estimated_error_m, 0};
   }
   [[nodiscard]] SimplifiedMesh measured(const Collapsed& simple, double absolute_m, double pieces_per_triangle) const {
     const JoinedSurface surface(points_, simple.indices);
     const Deviation there = surface_.deviation_from(surface, absolute_m, pieces_per_triangle);
     const Deviation back = surface.deviation_from(surface_, absolute_m, pieces_per_triangle);
-    return {mesh_of(mesh_, joined_, simple.indices), std::max(there.bound_m, back.bound_m), std::max(there.found_m, back.found_m),
+    return {mesh_over(mesh_, joined_.members, simple.indices), std::max(there.bound_m, back.bound_m), std::max(there.found_m, back.found_m),
             there.pieces + back.pieces};
   }
 
@@ -185,7 +151,44 @@ class Original {
   JoinedSurface surface_;
 };
 
+/// Of the vertices at one place, the one whose normal is nearest to the triangle's; sides do not matter, as shading has none.
+std::uint32_t best_member(const Mesh& mesh, const std::vector<std::uint32_t>& members, const Vec3& normal) {
+  std::uint32_t best = members.front();
+  double most = -1.0;
+  for (const std::uint32_t v : members) {
+    const double along = std::abs(glm::dot(Vec3(mesh.normals[v]), normal));
+    if (along > most) {
+      most = along;
+      best = v;
+    }
+  }
+  return best;
+}
+
 }  // namespace
+
+Mesh mesh_over(const Mesh& mesh, const std::vector<std::vector<std::uint32_t>>& members, const std::vector<std::uint32_t>& corners) {
+  Mesh result;
+  result.name = mesh.name;
+  std::vector<std::uint32_t> place(mesh.positions.size(), 0xFFFFFFFFU);
+  for (std::size_t i = 0; i + 2 < corners.size(); i += 3) {
+    const auto corner = [&](std::size_t c) { return Vec3(mesh.positions[members[corners[i + c]].front()]); };
+    const Vec3 normal = glm::cross(corner(1) - corner(0), corner(2) - corner(0));
+    for (std::size_t c = 0; c < 3; ++c) {
+      const std::uint32_t v = best_member(mesh, members[corners[i + c]], normal);
+      if (place[v] == 0xFFFFFFFFU) {
+        place[v] = static_cast<std::uint32_t>(result.positions.size());
+        result.positions.push_back(mesh.positions[v]);
+        result.normals.push_back(mesh.normals[v]);
+        if (!mesh.uvs.empty()) result.uvs.push_back(mesh.uvs[v]);
+        result.source.push_back(v);
+      }
+      result.indices.push_back(place[v]);
+    }
+  }
+  update_derived(result);
+  return result;
+}
 
 std::vector<SimplifiedMesh> simplified(const Mesh& mesh, const SimplifyOptions& options) {
   std::vector<SimplifiedMesh> levels;

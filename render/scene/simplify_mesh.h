@@ -28,6 +28,10 @@ struct SimplifyOptions {
   double pieces_per_triangle = 20.0;  // work for the bound, at most
 };
 
+/// Triangles over a mesh's own vertices: three `corners` each, of which each may be any of `members[corner]`, all at one place.
+[[nodiscard]] Mesh mesh_over(const Mesh& mesh, const std::vector<std::vector<std::uint32_t>>& members,
+                             const std::vector<std::uint32_t>& corners);
+
 /// From fine to coarse, ever fewer triangles and ever greater errors; none for a mesh of few triangles. Derived values are up to date.
 [[nodiscard]] std::vector<SimplifiedMesh> simplified(const Mesh& mesh, const SimplifyOptions& options);
 

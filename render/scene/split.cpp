@@ -153,7 +153,7 @@ class Splitter {
       while (end < triangles.size() && triangles[end].part == triangles[begin].part) ++end;
       const Part whole = scene_.parts[first_part + triangles[begin].part];
       Mesh piece = extract(scene_.meshes[whole.mesh], triangles.subspan(begin, end - begin));
-      scene_.parts.push_back({static_cast<std::uint32_t>(scene_.meshes.size()), whole.material});
+      scene_.parts.push_back({static_cast<std::uint32_t>(scene_.meshes.size()), whole.material, whole.gltf_mesh, whole.gltf_primitive});
       scene_.meshes.push_back(std::move(piece));
       ++range.count;
       begin = end;
@@ -181,6 +181,7 @@ class Splitter {
       piece.positions.push_back(mesh.positions[old]);
       piece.normals.push_back(mesh.normals[old]);
       if (!mesh.uvs.empty()) piece.uvs.push_back(mesh.uvs[old]);
+      piece.source.push_back(mesh.source.empty() ? old : mesh.source[old]);
       new_index_[old] = kUnused;
     }
     return piece;

@@ -128,7 +128,7 @@ class DeviationSearch {
     look_at_corners(from);
     for (std::size_t t = 0; t < from.triangles.size(); ++t) add(from.corners(t), 0);
     const std::uint64_t most = result_.pieces + limits_.pieces;
-    while (!open_.empty() && result_.pieces < most) {
+    while (!open_.empty() && result_.pieces < most && !(result_.found_m > limits_.refuted_m)) {
       const Piece piece = open_.top();
       if (piece.bound_m <= std::max(settled_m_, tight_m())) break;
       open_.pop();

@@ -11,6 +11,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "render/scene/scene.h"
@@ -68,9 +69,10 @@ class SurfaceTree {
 
 /// Where the search may stop: whatever comes first.
 struct DeviationLimits {
-  double relative = 0.25;            // bound over what was found, above 1
-  double absolute_m = 0.0;           // a bound below this need not be any tighter
-  std::uint64_t pieces = 1'000'000;  // of surface looked at, after the triangles themselves
+  double relative = 0.25;                                      // bound over what was found, above 1
+  double absolute_m = 0.0;                                     // a bound below this need not be any tighter
+  std::uint64_t pieces = 1'000'000;                            // of surface looked at, after the triangles themselves
+  double refuted_m = std::numeric_limits<double>::infinity();  // once some point is found to be farther, nothing else is asked
 };
 
 struct Deviation {

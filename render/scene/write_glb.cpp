@@ -7,9 +7,9 @@
 #include <nlohmann/json.hpp>
 #include <span>
 
-#include "render/base/error.h"
 #include "render/base/staged_file.h"
 #include "render/image/image_io.h"
+#include "render/scene/glb_container.h"
 #include "render/scene/gltf_materials.h"
 #include "render/scene/load.h"
 
@@ -153,19 +153,10 @@ class GlbWriter {
 
   template <class Use>
   void use_chunks(const OrderedJson& json, Use&& use) {
-    std::string text = json.dump(-1, ' ', false, OrderedJson::error_handler_t::replace);
-    text.resize((text.size() + 3) / 4 * 4, ' ');
     binary_.resize((binary_.size() + 3) / 4 * 4, 0);
-    const std::size_t length = 12 + 8 + text.size() + 8 + binary_.size();
-    if (length > 0xFFFFFFFFU)
-      throw Failure(ErrorWord::kBadUsage, "the scene takes " + std::to_string(length) + " bytes; a GLB holds 4 GiB");
-    const auto word = [](std::size_t value) { return static_cast<std::uint32_t>(value); };
-    const std::array<std::uint32_t, 5> head{0x46546C67U, 2, word(length), word(text.size()), 0x4E4F534AU};
-    const std::array<std::uint32_t, 2> binary_head{word(binary_.size()), 0x004E4942U};
-    const auto bytes = [](const auto& list) {
-      return std::string_view(reinterpret_cast<const char*>(list.data()), list.size() * sizeof(list[0]));
-    };
-    const std::array<std::string_view, 4> pieces{bytes(head), bytes(text), bytes(binary_head), bytes(binary_)};
+    const GlbContainer container(json.dump(-1, ' ', false, OrderedJson::error_handler_t::replace),
+                                 {reinterpret_cast<const char*>(binary_.data()), binary_.size()});
+    const std::array<std::string_view, 4> pieces = container.pieces();
     use(std::span<const std::string_view>(pieces));
   }
 

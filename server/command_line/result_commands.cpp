@@ -41,6 +41,7 @@ struct OpenedPlacement {
   Scene scene;
   Hierarchy hierarchy;
   Target target;
+  std::uint64_t lods_bytes = 0;  // of the buffers of lods.glb
 };
 
 std::string input_path(const CommandContext& context, const std::string& given, const char* which) {
@@ -55,16 +56,14 @@ void require_same(const std::string& what, const std::string& path, const std::s
   if (is != was) throw Failure(ErrorWord::kFileBroken, what + " " + path + " has SHA-256 " + is + ", the placement was made for " + was);
 }
 
-// Levels are made anew from the scene, so that nothing rests on the shipped file; that it holds these very levels is asked of its bytes.
+// Levels come from the file that ships: what is drawn, estimated and checked is what it holds.
 void open_levels(const CommandContext& context, OpenedPlacement& opened) {
-  if (opened.file.lods_sha256.empty()) {
-    remove_all_levels(opened.scene);
-    return;
-  }
-  add_object_levels(opened.scene, level_options(opened.file.spec, opened.file.camera, thread_count(context.spec)), context.budget);
+  if (opened.file.lods_sha256.empty()) return remove_all_levels(opened.scene);
   const fs::path file = fs::path(context.arguments.folder) / "lods.glb";
-  require_same("levels of detail", file.string(), sha256_hex(read_file(file)), opened.file.lods_sha256);
-  require_same("levels of detail", "made anew", sha256_hex(scene_glb(scene_of_levels(opened.scene))), opened.file.lods_sha256);
+  const std::string glb = read_file(file);
+  require_same("levels of detail", file.string(), sha256_hex(glb), opened.file.lods_sha256);
+  read_levels(opened.file.lods, glb, opened.scene);
+  opened.lods_bytes = write_levels(opened.scene).buffer_bytes;
 }
 
 OpenedPlacement open_placement(const CommandContext& context) {
@@ -83,7 +82,7 @@ OpenedPlacement open_placement(const CommandContext& context) {
   return opened;
 }
 
-json check_json(const CheckReport& report) {
+json check_json(const CheckReport& report, std::uint64_t lods_bytes) {
   json findings = json::array();
   for (const auto& finding : report.findings)
     findings.push_back({{"violation", violation_name(finding.violation)}, {"index", finding.index}, {"sentence", finding.sentence}});
@@ -92,6 +91,8 @@ json check_json(const CheckReport& report) {
           {"regions", report.regions},
           {"texture_bytes", report.texture_bytes},
           {"geometry_bytes", report.geometry_bytes},
+          {"lods_bytes", lods_bytes},
+          {"levels_s", report.levels_s},
           {"worst_bound_after_ms", report.worst_bound_after_ms},
           {"violations", report.findings.size()},
           {"findings", std::move(findings)}};
@@ -119,15 +120,19 @@ int check_command(const CommandContext& context) {
   const OpenedPlacement opened = open_placement(context);
   const PlacementFile& file = opened.file;
   const ViewSpaceOptions options = view_space_options(file.spec);
-  const CheckInput input{opened.scene, opened.hierarchy.rank, opened.target.model, file.camera,
-                         file.view_space, options, file.spec.budget_ms, file.atlas_pages};
+  const LevelOptions levels = level_options(file.spec, file.camera, thread_count(context.spec));
+  const CheckInput input{opened.scene,    opened.hierarchy.rank, opened.target.model,  file.camera,      file.view_space,
+                         options,         file.spec.budget_ms,   file.atlas_pages, levels};
   const CheckReport report = check_placement(input, file.placement, thread_count(context.spec), context.budget);
   if (context.arguments.json) {
-    std::cout << check_json(report).dump(2) << "\n";
+    std::cout << check_json(report, opened.lods_bytes).dump(2) << "\n";
   } else {
     std::printf("%u CPVs, %u solved; %llu regions bounded; %.3f MB of texture; highest bound of a CPV %.3f ms, budget %.3f ms\n",
                 report.cpvs, report.solved, static_cast<unsigned long long>(report.regions),
                 static_cast<double>(report.texture_bytes) / 1e6, report.worst_bound_after_ms, file.spec.budget_ms);
+    if (opened.lods_bytes > 0)
+      std::printf("%.3f MB of levels of detail, their errors bounded anew in %.1f s\n", static_cast<double>(opened.lods_bytes) / 1e6,
+                  report.levels_s);
     for (const auto& finding : report.findings) std::printf("%s: %s\n", violation_name(finding.violation), finding.sentence.c_str());
   }
   return report.findings.empty() && report.solved == report.cpvs ? 0 : 1;

@@ -6,7 +6,6 @@
 #include <tuple>
 
 #include "render/base/error.h"
-#include "render/scene/object_levels.h"
 
 namespace standin {
 namespace {
@@ -241,23 +240,22 @@ PlacementImpostor to_impostor(const json& value) {
   return impostor;
 }
 
-json levels_json(const Object& object, const LevelNumbers& numbers) {
-  json levels = json::array();
-  for (const ObjectLevel& level : object.levels)
-    levels.push_back({{"least_distance", level.least_distance_m},
-                      {"error", level.error_m < 0.0 ? json() : json(level.error_m)},
-                      {"triangles", level.triangle_count},
-                      {"gltf_node", "lod_" + std::to_string(numbers.at({level.first_part, level.part_count}))}});
-  return levels;
+json level_json(const StatedLevel& level) {
+  return {{"least_distance", level.least_distance_m},
+          {"error", level.error_m < 0.0 ? json() : json(level.error_m)},
+          {"triangles", level.triangle_count},
+          {"gltf_node", level.gltf_node}};
 }
 
 // Null where all objects always show what the scene holds.
 json lods_json(const PlacementFile& file, const Scene& scene) {
   if (file.lods_sha256.empty()) return nullptr;
-  const LevelNumbers numbers = number_levels(scene);
   json objects = json::array();
-  for (std::size_t id = 0; id < scene.objects.size(); ++id)
-    if (!scene.objects[id].levels.empty()) objects.push_back({{"object", id}, {"levels", levels_json(scene.objects[id], numbers)}});
+  for (const StatedLevel& level : stated_levels(scene)) {
+    if (objects.empty() || objects.back()["object"] != level.object)
+      objects.push_back({{"object", level.object}, {"levels", json::array()}});
+    objects.back()["levels"].push_back(level_json(level));
+  }
   return {{"error_px", file.spec.lods_error_px},
           {"asset", {{"file", "lods.glb"}, {"sha256", file.lods_sha256}}},
           {"objects", std::move(objects)}};
@@ -270,7 +268,12 @@ void read_lods(const json& lods, const json& objects, PlacementFile& file) {
     PlacementLevels levels{entry.at("object"), {}, {}};
     if (levels.object >= objects.size()) throw Failure(ErrorWord::kFileBroken, "lods.objects names an object that does not exist");
     levels.bounds = to_box(objects.at(levels.object).at("bounds"));
-    for (const auto& level : entry.at("levels")) levels.least_distance_m.push_back(level.at("least_distance"));
+    for (const auto& level : entry.at("levels")) {
+      const json& error = level.at("error");
+      file.lods.push_back({levels.object, level.at("gltf_node"), level.at("least_distance"), error.is_null() ? -1.0 : error.get<double>(),
+                           level.at("triangles")});
+      levels.least_distance_m.push_back(level.at("least_distance"));
+    }
     const bool in_order = file.placement.levels.empty() || file.placement.levels.back().object < levels.object;
     if (!in_order || !std::ranges::is_sorted(levels.least_distance_m) || levels.least_distance_m.size() > 255)
       throw Failure(ErrorWord::kFileBroken, "lods.objects: object " + std::to_string(levels.object) + " or its levels are out of order");

@@ -7,6 +7,7 @@
 #include "estimation/time_model.h"
 #include "placement/runtime/placement.h"
 #include "placement/view_space/view_space.h"
+#include "render/scene/level_file.h"
 #include "render/scene/scene.h"
 #include "server/job/job_spec.h"
 
@@ -24,7 +25,8 @@ struct PlacementFile {
   ViewSpace view_space;
   std::uint32_t atlas_pages = 0;  // a texture switch each, charged to every region that draws an impostor
   Placement placement;
-  std::string lods_sha256;  // of lods.glb; empty where no levels of detail are shown
+  std::string lods_sha256;             // of lods.glb; empty where no levels of detail are shown
+  std::vector<StatedLevel> lods = {};  // as read; written are those of the scene
 };
 
 [[nodiscard]] nlohmann::json placement_to_json(const PlacementFile& file, const Scene& scene);

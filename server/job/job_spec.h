@@ -45,7 +45,7 @@ struct JobSpec {
   double visibility_missed_share = 1e-4;
   std::uint64_t visibility_rays = 1'000'000;
 
-  std::string lods = "off";  // auto: where they save enough; on; off
+  std::string lods = "auto";  // where they save enough; on; off
   double lods_error_px = 1.0;
 
   std::vector<double> apex_deg = {11.25, 22.5, 45.0, 90.0};

@@ -38,7 +38,7 @@ void place_at_budget(const Surveyed& job, const JobSpec& spec, Placed& placed, B
     std::vector<std::uint32_t> kept;
     placed.placement = assemble_placement(placed.subdivision, world.view_space, placed.selected.baked, placed.selected.assigned, model,
                                           world.camera, spec.budget_ms, placed.selected.page_switch_ms, kept);
-    placed.placement.levels = placement_levels(world.scene);
+    if (placed.shows_levels) placed.placement.levels = placement_levels(world.scene);
     std::vector<Impostor> impostors;
     for (const auto old : kept) impostors.push_back(std::move(placed.selected.impostors[old]));
     placed.set = pack_atlas(std::move(impostors));
@@ -57,7 +57,7 @@ PlacementFile placement_file(const Surveyed& job, const Placed& placed, const Jo
           job.world.view_space,
           placed.selected.atlas_pages,
           placed.placement,
-          job.world.lods.sha256};
+          placed.shows_levels ? job.world.lods.sha256 : ""};
 }
 
 }  // namespace standin

@@ -13,6 +13,7 @@ namespace standin {
 
 struct Placed {
   Subdivision subdivision;
+  bool shows_levels = false;  // of detail
   CandidateSet candidates;
   SelectedImpostors selected;
   Placement placement;
@@ -20,7 +21,8 @@ struct Placed {
   std::string glb;
 };
 
-/// Fills all of `placed` but its subdivision, which it goes on from. `bakes`: shared with other budgets, or none.
+/// Fills all of `placed` but its subdivision and whether it shows levels of detail, which it goes on from. `bakes`: shared with other
+/// budgets, or none.
 void place_at_budget(const Surveyed& job, const JobSpec& spec, Placed& placed, BakeMemory* bakes, StageClock& clock,
                      const WorkBudget& budget);
 

@@ -64,16 +64,18 @@ json select_metrics(const SelectedImpostors& selected, const Placement& placemen
           {"rounds", std::move(rounds)}};
 }
 
-json memory_json(const Placement& placement, const ImpostorSet& set) {
+json memory_json(const Placed& placed, const LodFigures& lods) {
   std::uint64_t texture = 0, geometry = 0;
-  for (const auto& impostor : placement.impostors) {
+  const std::uint64_t of_levels = placed.shows_levels ? lods.file.buffer_bytes : 0;
+  for (const auto& impostor : placed.placement.impostors) {
     texture += impostor.texture_bytes;
     geometry += impostor.geometry_bytes;
   }
   return {{"texture_bytes", texture},
           {"geometry_bytes", geometry},
-          {"total_bytes", texture + geometry},
-          {"atlas_padding_bytes", padding_bytes(set)}};
+          {"lods_bytes", of_levels},
+          {"total_bytes", texture + geometry + of_levels},
+          {"atlas_padding_bytes", padding_bytes(placed.set)}};
 }
 
 json bound_json(const SelectedImpostors& selected) {

@@ -13,7 +13,7 @@ namespace standin {
 [[nodiscard]] nlohmann::json impostor_counts(const Placement& placement);
 [[nodiscard]] nlohmann::json select_metrics(const SelectedImpostors& selected, const Placement& placement);
 /// memory, but for what needs the pages themselves (gpu_memory.h).
-[[nodiscard]] nlohmann::json memory_json(const Placement& placement, const ImpostorSet& set);
+[[nodiscard]] nlohmann::json memory_json(const Placed& placed, const LodFigures& lods);
 /// bound
 [[nodiscard]] nlohmann::json bound_json(const SelectedImpostors& selected);
 

@@ -1,6 +1,7 @@
 #include "server/job/surveyed_scene.h"
 
 #include <limits>
+#include <utility>
 
 #include "server/cache/search_cache.h"
 #include "server/job/fit_sizes.h"
@@ -72,6 +73,17 @@ Subdivision problem_views(const Surveyed& job, double predicted_budget_ms, const
   options.leaves = std::move(leaves);
   return subdivide(world.scene, world.hierarchy.rank, world.view_space, world.visibility, job.target.model, world.camera,
                    world.view_space_options, options, budget, job.searches.get());
+}
+
+std::optional<Subdivision> levels_in_vain(Surveyed& job, const JobSpec& spec, const Subdivision& problem, const WorkBudget& budget) {
+  if (!job.world.lods.used || spec.lods == "on" || !problem.cpvs.empty()) return std::nullopt;
+  std::vector<std::vector<ObjectLevel>> levels;
+  for (Object& object : job.world.scene.objects) levels.push_back(std::exchange(object.levels, {}));
+  auto searches = std::exchange(job.searches, nullptr);  // of the scene with its levels
+  Subdivision without = problem_views(job, job.target.model.predicted_budget_ms(spec.budget_ms), budget);
+  job.searches = std::move(searches);
+  for (std::size_t id = 0; id < levels.size(); ++id) job.world.scene.objects[id].levels = std::move(levels[id]);
+  return without.cpvs.empty() ? std::optional(std::move(without)) : std::nullopt;
 }
 
 void survey_scene(Surveyed& job, const JobSpec& spec, const Subdivision* problem, StageClock& clock, const WorkBudget& budget) {

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include "estimation/time_model.h"
 #include "placement/candidates/candidates.h"
@@ -18,6 +19,7 @@ namespace standin {
 
 /// Why stages are left out where there is nothing to place.
 inline constexpr const char* kNoProblemViews = "no problem views: every region's bound is within the budget";
+inline constexpr const char* kLevelsInVain = "no problem views without them: every region's bound is within the budget";
 
 struct Surveyed {
   std::unique_ptr<StageCache> cache;  // of results that outlive the job; none: none do
@@ -36,6 +38,11 @@ void load_job(const JobFiles& files, const JobSpec& spec, StageClock& clock, con
 /// The regions whose predicted bound exceeds the budget. `leaves`: of these leaf cubes, sorted; empty: of all.
 [[nodiscard]] Subdivision problem_views(const Surveyed& job, double predicted_budget_ms, const WorkBudget& budget,
                                         std::vector<CellKey> leaves = {});
+
+/// The same regions with every object drawn as it is in the file, where levels of detail are used, not asked for by name, and leave no
+/// region over the budget; nothing where that is not so or some region is over budget without them: levels are of use.
+[[nodiscard]] std::optional<Subdivision> levels_in_vain(Surveyed& job, const JobSpec& spec, const Subdivision& problem,
+                                                        const WorkBudget& budget);
 
 /// Stages size_model and survey. `problem`: the problem views of a placement, if there is one: how low another budget might go is then left
 /// out, since the selection says of each region that it cannot solve what it could be brought to.

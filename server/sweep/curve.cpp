@@ -33,7 +33,8 @@ double number(const json& object, const char* key, const std::string& place) {
 std::uint64_t whole(const json& object, const char* key, const std::string& place) {
   const double value = number(object, key, place);
   constexpr double kMost = 9007199254740992.0;  // up to here doubles count
-  if (value != std::floor(value) || value > kMost) broken(place + "." + key, "= " + member(object, key, place).dump() + " violates: a whole number");
+  if (value != std::floor(value) || value > kMost)
+    broken(place + "." + key, "= " + member(object, key, place).dump() + " violates: a whole number");
   return static_cast<std::uint64_t>(value);
 }
 
@@ -52,6 +53,7 @@ CurvePoint point_from_json(const json& object, const std::string& place) {
   point.impostors = whole(object, "impostors", place);
   point.texture_bytes = whole(object, "texture_bytes", place);
   point.geometry_bytes = whole(object, "geometry_bytes", place);
+  if (object.contains("lods_bytes")) point.lods_bytes = whole(object, "lods_bytes", place);  // older files have none
   point.lower_bound_bytes = number(object, "memory_lower_bound_bytes", place);
   if (point.unsolved > point.cpvs) broken(place + ".cpv", "has more unsolved than there are");
   return point;
@@ -67,6 +69,7 @@ json to_json(const CurvePoint& point) {
           {"impostors", point.impostors},
           {"texture_bytes", point.texture_bytes},
           {"geometry_bytes", point.geometry_bytes},
+          {"lods_bytes", point.lods_bytes},
           {"total_bytes", point.total_bytes()},
           {"memory_lower_bound_bytes", point.lower_bound_bytes},
           {"gap", point.gap},

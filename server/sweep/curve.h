@@ -20,12 +20,13 @@ struct CurvePoint {
   std::uint64_t impostors = 0;
   std::uint64_t texture_bytes = 0;  // the objective
   std::uint64_t geometry_bytes = 0;
+  std::uint64_t lods_bytes = 0;    // of levels of detail
   double lower_bound_bytes = 0.0;  // of texture_bytes
   double gap = 0.0;
   double seconds = 0.0;  // what this budget took beside what all share
 
   [[nodiscard]] bool met() const { return unsolved == 0; }
-  [[nodiscard]] std::uint64_t total_bytes() const { return texture_bytes + geometry_bytes; }
+  [[nodiscard]] std::uint64_t total_bytes() const { return texture_bytes + geometry_bytes + lods_bytes; }
 };
 
 struct CurveSubject {

@@ -78,6 +78,7 @@ CurvePoint point_of(const Surveyed& job, const Placed& placed, double budget_ms,
     point.texture_bytes += impostor.texture_bytes;
     point.geometry_bytes += impostor.geometry_bytes;
   }
+  point.lods_bytes = placed.shows_levels ? job.world.lods.file.buffer_bytes : 0;
   const json bound = bound_json(placed.selected);
   point.lower_bound_bytes = bound["memory_lower_bound_bytes"];
   point.gap = bound["gap"];
@@ -90,14 +91,20 @@ struct SweptPoint {
   json numbers;  // its entry of sweep.json
 };
 
-SweptPoint sweep_budget(const Surveyed& job, JobSpec spec, double budget_ms, BakeMemory& bakes, const WorkBudget& budget) {
+SweptPoint sweep_budget(Surveyed& job, JobSpec spec, double budget_ms, BakeMemory& bakes, const WorkBudget& budget) {
   spec.budget_ms = budget_ms;
   budget.report(milliseconds_text(budget_ms), 0.0);
   bakes.begin_job();
   const std::uint64_t baked_before = bakes.kept(), recalled_before = bakes.recalled();
   StageClock clock(budget);
   Placed placed;
-  placed.subdivision = clock.run("view_space", [&] { return problem_views(job, job.target.model.predicted_budget_ms(budget_ms), budget); });
+  clock.run("view_space", [&] {
+    placed.subdivision = problem_views(job, job.target.model.predicted_budget_ms(budget_ms), budget);
+    auto without = levels_in_vain(job, spec, placed.subdivision, budget);
+    placed.shows_levels = job.world.lods.used && !without;
+    if (without) placed.subdivision = *std::move(without);
+  });
+  if (job.world.lods.used && !placed.shows_levels && !forced(spec, "lods")) clock.leave_out("lods", kLevelsInVain);
   place_at_budget(job, spec, placed, &bakes, clock, budget);
   SweptPoint swept{point_of(job, placed, budget_ms, clock.seconds()), {}};
   swept.numbers = to_json(swept.point);
@@ -114,8 +121,7 @@ SweptPoint sweep_budget(const Surveyed& job, JobSpec spec, double budget_ms, Bak
 }
 
 /// From loose to tight: the bakes of one budget serve the next.
-std::vector<SweptPoint> sweep_budgets(const Surveyed& job, const JobSpec& spec, const std::vector<double>& budgets_ms,
-                                      const WorkBudget& budget) {
+std::vector<SweptPoint> sweep_budgets(Surveyed& job, const JobSpec& spec, const std::vector<double>& budgets_ms, const WorkBudget& budget) {
   BakeMemory bakes;
   std::vector<SweptPoint> swept;
   for (const double budget_ms : budgets_ms | std::views::reverse) swept.push_back(sweep_budget(job, spec, budget_ms, bakes, budget));

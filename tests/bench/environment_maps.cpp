@@ -192,6 +192,7 @@ int main(int argc, char** argv) {
   if (argc < 5) return std::fprintf(stderr, "usage: environment_maps SCENE TARGET SIDE_M FAR_FIELD_M,.. [CELLS [VIEWS [MISSED_SHARE]]]\n"), 2;
   try {
     JobSpec spec;
+    spec.lods = "off";  // objects as the scene has them
     spec.view_space = "walk";
     spec.leaf_m = std::strtod(argv[3], nullptr);
     spec.visibility = "off";  // of the chosen cells alone, below

@@ -32,6 +32,7 @@ struct Arguments {
   std::uint32_t count = 300;
   double share = 0.6;
   JobSpec spec;
+  spec.lods = "off";  // objects as the scene has them
 };
 
 Arguments parse(int argc, char** argv) {

@@ -1,6 +1,6 @@
 // What geometric levels of detail save, by distance, and how good their error bounds are for the time they take (lods.md holds results).
 //
-//     lods SCENE.glb... [--error-px 1] [--split-triangles 100000] [--texture-folder DIR]
+//     lods SCENE.glb... [--error-px 1] [--split-triangles 100000] [--texture-folder DIR] [--saved-only]
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -80,6 +80,7 @@ void print_bounds(const Scene& scene, std::size_t mesh_count) {
 
 int run(const std::vector<std::string>& arguments) {
   double error_px = 1.0;
+  bool with_bounds = true;
   LoadOptions load;
   std::vector<std::string> files;
   for (std::size_t i = 0; i < arguments.size(); ++i) {
@@ -89,6 +90,8 @@ int run(const std::vector<std::string>& arguments) {
       load.split_triangles = std::stoull(arguments[++i]);
     else if (arguments[i] == "--texture-folder")
       load.texture_folders.emplace_back(arguments[++i]);
+    else if (arguments[i] == "--saved-only")
+      with_bounds = false;
     else
       files.push_back(arguments[i]);
   }
@@ -104,6 +107,7 @@ int run(const std::vector<std::string>& arguments) {
     print_saved(scene);
     std::printf("\n");
     print_kinds(scene);
+    if (!with_bounds) continue;
     std::printf("\n");
     print_bounds(scene, mesh_count);
   }

@@ -88,7 +88,7 @@ function place([build, scene, work, triangles, ...flags]) {
     const config = join(work, `${name}.toml`), out = join(work, name);
     writeFileSync(config, `[view_space]\nkind = "boxes"\nboxes = [{ min = [${min}], max = [${max}] }]\n[scene]\nsplit_triangles = 4000\n`);
     rmSync(out, { recursive: true, force: true });
-    const words = ["place", scene, "--target", target, "--config", config, "--budget-ms", `${triangles / 1000}`, "--verify-views", "0", "--survey-views", "2000", "--quiet", "-o", out, ...flags];
+    const words = ["place", scene, "--target", target, "--lods", "off", "--config", config, "--budget-ms", `${triangles / 1000}`, "--verify-views", "0", "--survey-views", "2000", "--quiet", "-o", out, ...flags];
     const { status, stderr } = spawnSync(standin, words, { encoding: "utf8", maxBuffer: 1 << 28 });
     if (status !== 0 && status !== 1) throw new Error(`place ${name}: ${stderr}`);
     const { survey, cpv, impostors, memory } = JSON.parse(readFileSync(join(out, "metrics.json")));

@@ -46,6 +46,7 @@ int main(int argc, char** argv) {
   if (argc < 4) return std::fprintf(stderr, "usage: reference_budget SCENE TARGET CPVS [MISSED_SHARE [CONFIG]]\n"), 2;
   try {
     JobSpec spec;
+    spec.lods = "off";  // objects as the scene has them
     spec.refine_levels = 0;
     if (argc > 5) read_config(spec, argv[5]);
     if (argc > 4) spec.visibility_missed_share = std::strtod(argv[4], nullptr);

@@ -94,6 +94,7 @@ int main(int argc, char** argv) {
   const std::size_t regions = argc > 3 ? std::strtoul(argv[3], nullptr, 10) : 300;
   const auto views = static_cast<std::uint32_t>(argc > 4 ? std::strtoul(argv[4], nullptr, 10) : 200);
   JobSpec spec;
+  spec.lods = "off";  // objects as the scene has them
   if (argc > 5) spec.texture_folders = {argv[5]};
   spec.visibility = "on";
   const WorkBudget budget;

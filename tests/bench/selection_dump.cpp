@@ -17,6 +17,7 @@ namespace {
 void dump(const JobFiles& files, double budget_ms, const std::string& out) {
   const WorkBudget budget;
   JobSpec spec;
+  spec.lods = "off";  // objects as the scene has them
   spec.budget_ms = budget_ms;
   spec.survey_views = 1;
   StageClock clock(budget);

@@ -88,7 +88,7 @@ class Runs {
     return this.keep(name, () => {
       const out = this.out(name);
       const start = Date.now();
-      launch(this.standin, "sweep", this.scene, "--target", target, "--budgets-ms", budgets.join(","), "--quiet", "--survey-views", "1000", "-o", out, ...more, ...this.flags);
+      launch(this.standin, "sweep", this.scene, "--target", target, "--budgets-ms", budgets.join(","), "--quiet", "--lods", "off", "--survey-views", "1000", "-o", out, ...more, ...this.flags);
       const { points, shared_stages_s } = read(join(out, "sweep.json"));
       return { wall_s: (Date.now() - start) / 1e3, shared_s: seconds(shared_stages_s), points: points.map((point) => ({ ...point, stages_s: seconds(point.stages_s) })) };
     });
@@ -110,7 +110,7 @@ class Runs {
     const points = budgets.map((budget, i) =>
       this.keep(`${name}_${i}`, () => {
         const out = this.out(name);
-        launch(this.standin, "place", this.scene, "--target", target, "--budget-ms", `${budget}`, "--quiet", "--survey-views", "1000", "--verify-views", "0", "-o", out, ...flags, ...this.flags);
+        launch(this.standin, "place", this.scene, "--target", target, "--budget-ms", `${budget}`, "--quiet", "--lods", "off", "--survey-views", "1000", "--verify-views", "0", "-o", out, ...flags, ...this.flags);
         const { budget_ms, cpv, candidates, impostors, memory, stages_s } = read(join(out, "metrics.json"));
         const { violations } = JSON.parse(launch(this.standin, "check", out, "--json"));
         rmSync(out, { recursive: true });

@@ -254,6 +254,7 @@ void Bench::walk(std::size_t frames) const {
 int main(int argc, char** argv) {
   if (argc < 2) return std::fprintf(stderr, "usage: visibility SCENE [CELLS [FRAMES [TEXTURE_FOLDER]]]\n"), 2;
   JobSpec spec;
+  spec.lods = "off";  // objects as the scene has them
   if (argc > 4) spec.texture_folders = {argv[4]};
   spec.view_space = "walk";
   spec.visibility = "off";

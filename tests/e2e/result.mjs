@@ -12,7 +12,7 @@ const { placement, metrics } = resultOf(placed);
 
 const kMetrics = `
   scene.objects scene.triangles budget_ms cpv.count cpv.solved cpv.unsolved candidates.generated candidates.pruned impostors.count
-  memory.texture_bytes memory.geometry_bytes memory.total_bytes memory.atlas_padding_bytes bound.memory_lower_bound_bytes
+  memory.texture_bytes memory.geometry_bytes memory.lods_bytes memory.total_bytes memory.atlas_padding_bytes bound.memory_lower_bound_bytes
   survey.worst_frame_ms survey.p99_frame_ms survey.worst_bound_ms
   verify.views verify.over_budget_estimated image.views image.gap_pixels image.max_parallax_ratio image.silhouette_bloat_px image.mean_error image.mean_flip
   stages_s.load stages_s.visibility stages_s.view_space stages_s.candidates stages_s.select stages_s.bake stages_s.verify
@@ -85,7 +85,7 @@ test("metrics.json has its fields, all numbers are finite, and sums add up", () 
   // JSON has no NaN; a writer that met one leaves a null, so nulls may stand only for what was not measured, or for no CPV.
   for (const [path, value] of leaves(metrics))
     if (value === null) assert.match(path, /^survey\.reachable_|^verify\.(over_budget_measured|worst_over_budget|measured_coverage|worst_before_over_surveyed|frame_ms_|frames\.)/, `${path} is null`);
-  assert.equal(metrics.memory.texture_bytes + metrics.memory.geometry_bytes, metrics.memory.total_bytes);
+  assert.equal(metrics.memory.texture_bytes + metrics.memory.geometry_bytes + metrics.memory.lods_bytes, metrics.memory.total_bytes);
   assert.equal(metrics.cpv.solved + metrics.cpv.unsolved, metrics.cpv.count);
   assert.ok(metrics.bound.memory_lower_bound_bytes <= metrics.memory.texture_bytes);
   assert.equal(placement.impostors.reduce((sum, impostor) => sum + impostor.texture_bytes, 0), metrics.memory.texture_bytes);

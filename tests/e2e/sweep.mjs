@@ -59,7 +59,7 @@ test("the curve falls: every budget met, fewer slow regions at a looser one, and
   for (const [i, point] of points.entries()) {
     assert.ok(point.met && point.reachable && point.cpv.unsolved === 0 && point.cpv.count > 0, JSON.stringify(point));
     assert.ok(point.memory_lower_bound_bytes <= point.texture_bytes && point.gap >= 0 && point.seconds > 0, JSON.stringify(point));
-    assert.equal(point.total_bytes, point.texture_bytes + point.geometry_bytes);
+    assert.equal(point.total_bytes, point.texture_bytes + point.geometry_bytes + point.lods_bytes);
     if (i === 0) continue;
     const tighter = Math.max(...points.slice(0, i).map((earlier) => earlier.texture_bytes));
     assert.ok(point.texture_bytes <= tighter, `${point.budget_ms} ms takes ${point.texture_bytes} bytes, all tighter ones at most ${tighter}`);

@@ -37,8 +37,10 @@ function cpvTile(metrics) {
 function memoryTile(metrics) {
   const memory = field(metrics, "memory.total_bytes");
   if (!isNumber(memory)) return null;
-  const gap = field(metrics, "bound.gap");
-  return ["Memory of the impostors", bytes(memory), isNumber(gap) ? `at most ${percent(gap)} of it could be saved` : ""];
+  const gap = field(metrics, "bound.gap"), lods = field(metrics, "memory.lods_bytes");
+  const note = isNumber(gap) ? `at most ${percent(gap)} of the textures could be saved` : "";
+  if (!lods) return ["Memory of the impostors", bytes(memory), note];
+  return ["Memory of impostors and levels of detail", bytes(memory), `${bytes(lods)} of it levels of detail; ${note}`];
 }
 
 function reachTile(metrics) {

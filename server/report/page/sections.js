@@ -63,10 +63,11 @@ function gpuFormat(format, tried) {
 }
 
 function memorySection({ metrics, impostors }) {
-  if (impostors.length === 0) return null;
   const memory = metrics.memory || {}, bound = metrics.bound || {};
+  if (impostors.length === 0 && !memory.lods_bytes) return null;
   const rows = [
     ["textures, with gutters (the objective)", bytes(memory.texture_bytes)], ["geometry", bytes(memory.geometry_bytes)],
+    ...(memory.lods_bytes ? [["levels of detail: their triangles, on the scene's own vertices where it is glTF (not part of the objective)", bytes(memory.lods_bytes)]] : []),
     ["unused space in the atlases", bytes(memory.atlas_padding_bytes)], ["total", bytes(memory.total_bytes)],
     ...Object.entries(memory.gpu_bytes || {}).map(([format, value]) => [gpuFormat(format, (memory.gpu_compression || {})[format]), bytes(value)]),
     ["lower bound: no choice of these candidates needs less", bytes(bound.memory_lower_bound_bytes)],

@@ -52,7 +52,7 @@ function pointsSection(sweep) {
     { title: "budget", number: true, text: (point) => `${significant(point.budget_ms, 6)} ms` },
     { title: "outcome", text: pointState }, { title: "slow regions", number: true, text: (point) => count(point.cpv.count) },
     { title: "impostors", number: true, text: (point) => count(point.impostors) }, { title: "textures", number: true, text: (point) => bytes(point.texture_bytes) },
-    { title: "with geometry", number: true, text: (point) => bytes(point.total_bytes) }, { title: "lower bound", number: true, text: (point) => bytes(point.memory_lower_bound_bytes) },
+    { title: "with geometry and levels of detail", number: true, text: (point) => bytes(point.total_bytes) }, { title: "lower bound", number: true, text: (point) => bytes(point.memory_lower_bound_bytes) },
     { title: "gap", number: true, text: (point) => (point.texture_bytes > 0 ? percent(point.gap) : NONE) },
     { title: "reachable", text: (point) => (point.reachable ? "yes" : "not promised") },
     { title: "time", number: true, text: (point) => seconds(point.seconds) },

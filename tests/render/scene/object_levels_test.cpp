@@ -14,20 +14,14 @@
 #include "render/scene/simplify_mesh.h"
 #include "render/scene/surface_deviation.h"
 #include "tests/render/scene/glb_maker.h"
+#include "tests/render/scene/level_meshes.h"
 #include "tests/render/scene/temporary_folder.h"
 
 namespace standin {
 namespace {
 
-Mesh ball(int n) {
-  MeshBuilder builder;
-  std::vector<Ring> profile;
-  for (int i = 0; i <= n; ++i) profile.push_back({std::max(1e-3, std::sin(3.14159265 * i / n)), -std::cos(3.14159265 * i / n)});
-  builder.lathe({0, 0, 0}, profile, 2 * n);
-  Mesh mesh = builder.finish("ball");
-  update_derived(mesh);
-  return mesh;
-}
+using test::ball;
+using test::kLevelOptions;
 
 Mesh flat_shaded(const Mesh& mesh) {
   Mesh flat;
@@ -68,8 +62,6 @@ Scene scene_of(std::vector<Mesh> meshes, const std::vector<Mat4>& places) {
   update_derived(scene);
   return scene;
 }
-
-constexpr LevelOptions kOptions{1.2e-3, 2.14, 1};
 
 TEST(Simplified, IsSimplerAndNoFartherOffThanItSays) {
   const Mesh mesh = ball(24);
@@ -124,14 +116,14 @@ TEST(Simplified, FewTrianglesStay) {
 
 TEST(ObjectLevels, AreShownFromWhereTheirErrorIsSmall) {
   Scene scene = scene_of({ball(24)}, {Mat4(1.0), glm::scale(Mat4(1.0), Vec3(4.0))});
-  const LevelSummary summary = add_object_levels(scene, kOptions, WorkBudget());
+  const LevelSummary summary = add_object_levels(scene, kLevelOptions, WorkBudget());
   EXPECT_EQ(summary.objects, 2U);
   const Object &small = scene.objects[0], &large = scene.objects[1];
   ASSERT_GE(small.levels.size(), 2U);
   ASSERT_EQ(small.levels.size(), large.levels.size());
   for (std::size_t k = 0; k < small.levels.size(); ++k) {
     const ObjectLevel& level = small.levels[k];
-    EXPECT_NEAR(level.least_distance_m * kOptions.error_m_per_m, level.error_m, 1e-12);
+    EXPECT_NEAR(level.least_distance_m * kLevelOptions.error_m_per_m, level.error_m, 1e-12);
     EXPECT_NEAR(large.levels[k].least_distance_m, 4.0 * level.least_distance_m, 1e-9);
     EXPECT_EQ(large.levels[k].first_part, level.first_part);  // instances share their levels
     EXPECT_EQ(level_at(small, level.least_distance_m), k + 1);
@@ -155,7 +147,7 @@ TEST(ObjectLevels, PartsThatMeetDoNotComeApart) {
     return builder.finish("sheet");
   };
   Scene scene = scene_of({sheet(0.0, 1.0), sheet(1.0, 2.0)}, {Mat4(1.0)});
-  add_object_levels(scene, kOptions, WorkBudget());
+  add_object_levels(scene, kLevelOptions, WorkBudget());
   ASSERT_FALSE(scene.objects[0].levels.empty());
   for (const ObjectLevel& level : scene.objects[0].levels)
     for (std::uint32_t p = 0; p < 2; ++p) {
@@ -168,7 +160,7 @@ TEST(ObjectLevels, PartsThatMeetDoNotComeApart) {
 
 TEST(ObjectLevels, AreTheSameForAnyNumberOfThreads) {
   Scene one = scene_of({ball(20), ball(13)}, {Mat4(1.0)}), many = one;
-  LevelOptions options = kOptions;
+  LevelOptions options = kLevelOptions;
   add_object_levels(one, options, WorkBudget());
   options.threads = 4;
   add_object_levels(many, options, WorkBudget());
@@ -177,6 +169,23 @@ TEST(ObjectLevels, AreTheSameForAnyNumberOfThreads) {
   ASSERT_EQ(one.objects[0].levels.size(), many.objects[0].levels.size());
   for (std::size_t k = 0; k < one.objects[0].levels.size(); ++k)
     EXPECT_EQ(one.objects[0].levels[k].error_m, many.objects[0].levels[k].error_m);
+}
+
+// 1,000 triangles, then 500 and 100: what each saves, and how often, decides.
+TEST(LevelsWorthKeeping, AreThoseThatSaveMoreThanTheyWeigh) {
+  const auto kept = [](double often, double seldom, double triangles_per_byte) {
+    const std::vector<LevelWorth> levels{{500, 3000, often}, {100, 600, seldom}};
+    return levels_worth_keeping(1000, levels, triangles_per_byte);
+  };
+  using Kept = std::vector<std::size_t>;
+  EXPECT_EQ(kept(1.0, 1.0, 0.0), (Kept{0, 1}));
+  EXPECT_EQ(kept(1.0, 0.0, 0.0), (Kept{0})) << "nobody sees the second";
+  EXPECT_EQ(kept(0.0, 1.0, 0.0), (Kept{1})) << "nobody sees the first";
+  EXPECT_EQ(kept(0.0, 0.0, 0.0), (Kept{}));
+  EXPECT_EQ(kept(1.0, 1.0, 0.2), (Kept{1})) << "the first saves 500 triangles for 3,000 bytes";
+  EXPECT_EQ(kept(1.0, 1.0, 0.16), (Kept{0, 1}));
+  EXPECT_EQ(kept(1.0, 1.0, 1.6), (Kept{})) << "the second saves 900 for 600";
+  EXPECT_TRUE(levels_worth_keeping(1000, {}, 0.0).empty());
 }
 
 // A file with levels of its own: a strip of 40 triangles, one of 10, one of 2.
@@ -211,7 +220,7 @@ TEST(AuthoredLevels, AreTakenFromTheFile) {
   Scene scene = loaded(maker);
   ASSERT_EQ(scene.objects.size(), 1U);
   EXPECT_EQ(scene.triangle_count(), 40U);
-  const LevelSummary summary = add_object_levels(scene, kOptions, WorkBudget());
+  const LevelSummary summary = add_object_levels(scene, kLevelOptions, WorkBudget());
   EXPECT_EQ(summary.authored_objects, 1U);
   EXPECT_EQ(summary.simplified_meshes, 0U);
   const Object& object = scene.objects[0];
@@ -225,7 +234,7 @@ TEST(AuthoredLevels, AreTakenFromTheFile) {
 
 TEST(AuthoredLevels, WithoutCoverageGoByTheirMeasuredError) {
   Scene scene = loaded(strips());
-  add_object_levels(scene, kOptions, WorkBudget());
+  add_object_levels(scene, kLevelOptions, WorkBudget());
   const Object& object = scene.objects[0];
   ASSERT_FALSE(object.levels.empty());
   EXPECT_EQ(object.levels.back().triangle_count, 2U);  // all lie in the same plane: the simplest may be shown from next to it

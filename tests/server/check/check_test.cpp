@@ -64,7 +64,7 @@ struct Checked {
   }
 
   [[nodiscard]] CheckReport check(int threads = 1) const {
-    const CheckInput input{scene, rank, model, camera, space, options, budget_ms, 1};
+    const CheckInput input{scene, rank, model, camera, space, options, budget_ms, 1, {.error_m_per_m = 0.5}};
     return check_placement(input, placement, threads, {});
   }
 };
@@ -201,14 +201,14 @@ TEST(Check, BoundsAreThoseThatThePlacementWasMadeWith) {
   EXPECT_NE(sentences(by_sample), sentences(by_object));
 }
 
-// The tree at half its triangles from 20 m on: its regions' bounds fall, and what is shown must be as stated.
+// The tree at half its triangles from 20 m on: its regions' bounds fall, and what is shown must be as stated, and no farther off.
 TEST(Check, LevelsOfDetailCountAndAreHeldAgainstTheScenes) {
   Checked world;
   Object& tree = world.scene.objects[kTree];
   Mesh simple = world.scene.meshes[world.scene.parts[tree.first_part].mesh];
   simple.indices.resize(simple.indices.size() / 6 * 3);
   simple.simplified_from = static_cast<std::int32_t>(world.scene.parts[tree.first_part].mesh);
-  tree.levels.push_back({static_cast<std::uint32_t>(world.scene.parts.size()), 1, simple.triangle_count(), 0.01, -1.0, 20.0});
+  tree.levels.push_back({static_cast<std::uint32_t>(world.scene.parts.size()), 1, simple.triangle_count(), 10.0, -1.0, 20.0});
   world.scene.parts.push_back({static_cast<std::uint32_t>(world.scene.meshes.size()), world.scene.parts[tree.first_part].material});
   world.scene.meshes.push_back(std::move(simple));
   world.placement.levels = placement_levels(world.scene);
@@ -217,6 +217,10 @@ TEST(Check, LevelsOfDetailCountAndAreHeldAgainstTheScenes) {
 
   world.placement.levels[0].least_distance_m[0] = 10.0;
   EXPECT_THAT(sentences(world.check()), testing::ElementsAre(testing::StartsWith("levels: object 1: level 1 is shown from 10")));
+  world.placement.levels[0].least_distance_m[0] = 20.0;
+  tree.levels[0].error_m = 0.01;
+  EXPECT_THAT(sentences(world.check()), testing::ElementsAre(testing::StartsWith("levels: object 1: level 1: its surface lies within")));
+  tree.levels[0].error_m = 10.0;
   world.placement.levels.clear();
   EXPECT_THAT(sentences(world.check()), testing::ElementsAre(testing::StartsWith("levels: object 1: 0 levels of detail, recomputed 1")));
 }
