@@ -61,7 +61,8 @@ void load_job(const JobFiles& files, const JobSpec& spec, StageClock& clock, con
   job.cache = open_cache(spec, files.folder);
   job.target = read_target(files.target);
   build_world(files.scene, spec, clock, budget, job.world, job.cache.get());
-  if (job.cache != nullptr) job.searches = search_cache(job);
+  // Sampled views depend on the cells' parts, and what is known beside them on the budget: neither is in a search's name.
+  if (job.cache != nullptr && region_bounds(spec) != RegionBounds::kByView) job.searches = search_cache(job);
   job.candidate_options = candidate_options_of(spec, job.world.threads);
 }
 

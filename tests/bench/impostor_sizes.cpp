@@ -32,11 +32,11 @@ struct Arguments {
   std::uint32_t count = 300;
   double share = 0.6;
   JobSpec spec;
-  spec.lods = "off";  // objects as the scene has them
 };
 
 Arguments parse(int argc, char** argv) {
   Arguments arguments;
+  arguments.spec.lods = "off";  // objects as the scene has them
   for (int i = 2; i < argc; ++i) {
     const std::string flag = argv[i];
     if (!flag.starts_with("--")) {
