@@ -113,6 +113,7 @@ JobOutcome run_place(const JobFiles& files, const JobSpec& spec, const WorkBudge
   json& metrics = outcome.metrics;
   close_cache(job.cache.get(), spec, metrics);
   metrics["budget_ms"] = spec.budget_ms;
+  metrics["mode"] = region_bounds(spec) == RegionBounds::kByView ? "sampled" : "certified";
   metrics["cpv"] = cpv_json(placed.placement);
   metrics["candidates"] = candidates_json(placed.candidates);
   metrics["impostors"] = impostor_counts(placed.placement);

@@ -45,6 +45,7 @@ void print_place(const json& metrics) {
   std::printf("%s of %s CPVs solved, %s impostors, %.3f MB of texture (lower bound %.3f MB)\n", metrics["cpv"]["solved"].dump().c_str(),
               metrics["cpv"]["count"].dump().c_str(), metrics["impostors"]["count"].dump().c_str(),
               number(metrics, "memory", "texture_bytes") / 1e6, number(metrics, "bound", "memory_lower_bound_bytes") / 1e6);
+  if (metrics["mode"] == "sampled") std::printf("placed for sampled views, not for bounds: nothing is promised of the others\n");
   if (const double lods = number(metrics, "memory", "lods_bytes"); lods > 0.0)
     std::printf("levels of detail of %s objects, %.3f MB, which are no part of the bound\n", metrics["lods"]["objects"].dump().c_str(), lods / 1e6);
   std::size_t named = 0;

@@ -87,6 +87,7 @@ test("metrics.json has its fields, all numbers are finite, and sums add up", () 
     if (value === null) assert.match(path, /^survey\.reachable_|^verify\.(over_budget_measured|worst_over_budget|measured_coverage|worst_before_over_surveyed|frame_ms_|frames\.)/, `${path} is null`);
   assert.equal(metrics.memory.texture_bytes + metrics.memory.geometry_bytes + metrics.memory.lods_bytes, metrics.memory.total_bytes);
   assert.equal(metrics.cpv.solved + metrics.cpv.unsolved, metrics.cpv.count);
+  assert.equal(metrics.mode, "certified");
   assert.ok(metrics.bound.memory_lower_bound_bytes <= metrics.memory.texture_bytes);
   assert.equal(placement.impostors.reduce((sum, impostor) => sum + impostor.texture_bytes, 0), metrics.memory.texture_bytes);
 });
