@@ -4,9 +4,9 @@
 // something and ask which shafts enclose the cell. Each shaft is then tightened: axis, aperture and near plane shrink to the cells served
 // (2x less memory for nothing, simulation.md). Candidates with the same node and cells are duplicates; hopeless ones (too many layers, no
 // gain) are dropped in O(1) from the closed-form layer count. Every (node, cell) that can gain anything also gets the shaft tight around
-// that cell alone, so that the selection can reach what reachable_times() promises (pyramids, a baseline, may fall short of it). A node whose visible objects all lie in one child gets
-// none of its own: the child's is the same impostor. Each is offered once per technique that has something of its own to offer (draft.h);
-// planar impostors are offered for further, smaller sets of cells (planar_parts.h).
+// that cell alone, so that the selection can reach what reachable_times() promises (pyramids, a baseline, may fall short of it). A node
+// whose visible objects all lie in one child gets none of its own: the child's is the same impostor. Each is offered once per technique
+// that has something of its own to offer (draft.h); planar impostors are offered for further, smaller sets of cells (planar_parts.h).
 #pragma once
 
 #include <cstdint>
@@ -31,7 +31,7 @@ enum class CellShape {
 struct CandidateOptions {
   std::vector<double> apex_deg = {11.25, 22.5, 45.0, 90.0};
   double direction_step_deg = 11.25;
-  bool every_direction = false;         // for tests: also asks of each cell the directions that cannot hold it
+  bool every_direction = false;  // for tests: also asks of each cell the directions that cannot hold it
   CellShape shape = CellShape::kShaft;
   int threads = 1;
 };

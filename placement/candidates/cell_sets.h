@@ -54,8 +54,8 @@ struct Pyramid {
   Shaft shaft;
   GroupSet groups;
 };
-/// Untightened: minimum distances are 1, 2, 4 .. 1024 diagonals of the cluster. Of those that hold the same groups the narrowest that begins
-/// farthest, once.
+/// Untightened: minimum distances are 1, 2, 4 .. 1024 diagonals of the cluster. Of those that hold the same groups the narrowest that
+/// begins farthest, once.
 [[nodiscard]] std::vector<Pyramid> pyramids(const Box& cluster, std::span<const CellGroup> groups, const DirectionGrid& grid,
                                             std::span<const double> apex_deg);
 [[nodiscard]] CellSet cells_of(const GroupSet& set, std::span<const CellGroup> groups);

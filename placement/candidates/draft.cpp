@@ -122,8 +122,7 @@ bool beats(const Draft& known, const Draft& draft) {
   return known.candidate.bytes <= draft.candidate.bytes && known.cost.fixed_ms <= draft.cost.fixed_ms;
 }
 
-std::vector<Draft> drafts_of(const DraftContext& context, std::uint32_t node, const CellSet& cells,
-                             const std::optional<Cluster>& cluster) {
+std::vector<Draft> drafts_of(const DraftContext& context, std::uint32_t node, const CellSet& cells, const std::optional<Cluster>& cluster) {
   std::vector<Draft> drafts;
   if (!cluster) return drafts;
   for (std::size_t i = 0; i < kTechniqueCount; ++i) {

@@ -45,7 +45,7 @@ struct CheckInput {
   const ViewSpaceOptions& view_space_options;
   double budget_ms;
   std::uint32_t atlas_pages;  // a texture switch each, charged to every region that draws an impostor
-  LevelOptions levels = {};  // where the scene has levels of detail
+  LevelOptions levels = {};   // where the scene has levels of detail
 };
 
 struct CheckReport {

@@ -48,9 +48,7 @@ class Search {
   }
 
   // By view, what is within the budget is not looked at: bounds prune little above what sampled views take.
-  [[nodiscard]] double threshold_ms() const {
-    return estimator_.by_view() ? budget_ms_ : std::min(budget_ms_, result_.worst_predicted_ms);
-  }
+  [[nodiscard]] double threshold_ms() const { return estimator_.by_view() ? budget_ms_ : std::min(budget_ms_, result_.worst_predicted_ms); }
 
   // Highest bound first, so that the worst region is met early and prunes the rest.
   void visit(std::vector<Node>& siblings) {

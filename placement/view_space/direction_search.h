@@ -31,8 +31,8 @@ struct DirectionSearchResult {
   void add(HotRegion region, std::span<const RegionTerm> its_terms);
 };
 
-/// All leaf intervals whose bound exceeds the budget, and the worst one in any case (by view, where none does: at most how bad it is). `looser`: what a search of the same cell at a higher
-/// budget found, or none; its regions are taken over.
+/// All leaf intervals whose bound exceeds the budget, and the worst one in any case (by view, where none does: at most how bad it is).
+/// `looser`: what a search of the same cell at a higher budget found, or none; its regions are taken over.
 [[nodiscard]] DirectionSearchResult search_directions(const RegionEstimator& estimator, CellCosts& cell, double predicted_budget_ms,
                                                       const DirectionSearchResult* looser = nullptr);
 /// What a search at a higher budget would return.

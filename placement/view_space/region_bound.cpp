@@ -28,7 +28,7 @@ std::size_t node_number(const DirectionInterval& interval) {
 
 }  // namespace
 
-DirectionTree::DirectionTree(const Camera& camera, int deepest_level) : deepest_level_(deepest_level) {
+DirectionTree::DirectionTree(const Camera& camera, int deepest_level) {
   if (deepest_level < 0 || deepest_level > kDeepestDirectionLevel)
     throw Failure(ErrorWord::kBadUsage, "direction intervals: level " + std::to_string(deepest_level) + " is not in 0.." +
                                             std::to_string(kDeepestDirectionLevel) + " (90 to 0.35 degrees)");
@@ -57,8 +57,7 @@ int RegionEstimator::leaf_level(const CellCosts& cell) const {
   return direction_level(first_leaf_level_, static_cast<int>(cell.chain.size()) - 1);
 }
 
-CellCosts RegionEstimator::cell_costs(std::vector<Box> chain, std::span<const std::uint32_t> visible,
-                                      std::vector<Box> parts) const {
+CellCosts RegionEstimator::cell_costs(std::vector<Box> chain, std::span<const std::uint32_t> visible, std::vector<Box> parts) const {
   CellCosts cell;
   cell.chain = std::move(chain);
   cell.parts = parts.empty() ? std::vector<Box>{cell.chain.front()} : std::move(parts);

@@ -49,10 +49,8 @@ class DirectionTree {
  public:
   DirectionTree(const Camera& camera, int deepest_level);
   [[nodiscard]] const DirectionCone& cone(const DirectionInterval& interval) const;
-  [[nodiscard]] int deepest_level() const { return deepest_level_; }
 
  private:
-  int deepest_level_;
   std::vector<DirectionCone> cones_;
 };
 
@@ -118,7 +116,6 @@ class RegionEstimator {
   [[nodiscard]] double coarse_bound_ms(const CellCosts& cell, const DirectionInterval& interval) const;
 
   [[nodiscard]] bool by_view() const { return bounds_ == RegionBounds::kByView; }
-  [[nodiscard]] const DirectionTree& directions() const { return directions_; }
   [[nodiscard]] const FeatureTable& features() const { return features_; }
   [[nodiscard]] const TimeModel& model() const { return *model_; }
 

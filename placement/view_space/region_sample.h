@@ -1,9 +1,9 @@
 // What some single views of a region cost: its demand in the `sampled` mode, which promises nothing.
 //
-// A region's bound (region_bound.h) adds up each object's dearest view, and holds for all. The dearest single view costs less, since no view
-// has all objects at their dearest at once: what the certificate costs in memory is seen by placing for sampled views instead. The worst of
-// these, with a margin for the views between them, is what must be brought within the budget; it is shared out among the objects as
-// the slowest of the views have it on average, so that impostors help all of these and not one alone.
+// A region's bound (region_bound.h) adds up each object's dearest view, and holds for all. The dearest single view costs less, since no
+// view has all objects at their dearest at once: what the certificate costs in memory is seen by placing for sampled views instead. The
+// worst of these, with a margin for the views between them, is what must be brought within the budget; it is shared out among the objects
+// as the slowest of the views have it on average, so that impostors help all of these and not one alone.
 #pragma once
 
 #include <cstdint>

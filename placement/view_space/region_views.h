@@ -1,7 +1,8 @@
-// Single views of one region (3D cell x direction interval): drawn uniformly, or near another one, to climb towards the region's worst view.
+// Single views of one region (3D cell x direction interval): drawn uniformly, or near another one, to climb towards the region's worst
+// view.
 //
-// A region's bound is judged by the worst view found in it (thesis 5.5.2). In five dimensions, uniform views miss it by some percent however
-// many are drawn; a climb from the worst of some comes nearer with fewer.
+// A region's bound is judged by the worst view found in it (thesis 5.5.2). In five dimensions, uniform views miss it by some percent
+// however many are drawn; a climb from the worst of some comes nearer with fewer.
 #pragma once
 
 #include <cmath>
@@ -43,8 +44,8 @@ class RegionViews {
   Rng rng_;
 };
 
-/// `views` views of the region, of which the first half are drawn uniformly and the others climb from the worst: visit(view) returns how bad
-/// a view is.
+/// `views` views of the region, of which the first half are drawn uniformly and the others climb from the worst: visit(view) returns how
+/// bad a view is.
 template <class Visit>
 void climb_to_worst(RegionViews region, std::uint32_t views, Visit&& visit) {
   constexpr double kWidest = 0.5, kNarrowest = 0.01;

@@ -47,7 +47,8 @@ void print_place(const json& metrics) {
               number(metrics, "memory", "texture_bytes") / 1e6, number(metrics, "bound", "memory_lower_bound_bytes") / 1e6);
   if (metrics["mode"] == "sampled") std::printf("placed for sampled views, not for bounds: nothing is promised of the others\n");
   if (const double lods = number(metrics, "memory", "lods_bytes"); lods > 0.0)
-    std::printf("levels of detail of %s objects, %.3f MB, which are no part of the bound\n", metrics["lods"]["objects"].dump().c_str(), lods / 1e6);
+    std::printf("levels of detail of %s objects, %.3f MB, which are no part of the bound\n", metrics["lods"]["objects"].dump().c_str(),
+                lods / 1e6);
   std::size_t named = 0;
   for (const auto& entry : metrics["unsolved"]) {
     if (++named > kNamedUnsolved) {
@@ -79,7 +80,8 @@ void print_gates(const json& sweep) {
   if (sweep.contains("baseline")) {
     const json& baseline = sweep["baseline"];
     for (const auto& one : baseline["regressions"]) std::printf("worse than the baseline %s\n", one["sentence"].get<std::string>().c_str());
-    for (const auto& budget_ms : baseline["not_compared_ms"]) std::printf("not compared: %s ms, not in both curves\n", budget_ms.dump().c_str());
+    for (const auto& budget_ms : baseline["not_compared_ms"])
+      std::printf("not compared: %s ms, not in both curves\n", budget_ms.dump().c_str());
     std::printf("%zu budgets compared with the baseline, %zu worse\n", baseline["compared_ms"].size(), baseline["regressions"].size());
   }
   for (const auto& verdict : sweep.value("acceptance", json::array()))

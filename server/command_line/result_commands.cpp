@@ -121,8 +121,8 @@ int check_command(const CommandContext& context) {
   const PlacementFile& file = opened.file;
   const ViewSpaceOptions options = view_space_options(file.spec);
   const LevelOptions levels = level_options(file.spec, file.camera, thread_count(context.spec));
-  const CheckInput input{opened.scene,    opened.hierarchy.rank, opened.target.model,  file.camera,      file.view_space,
-                         options,         file.spec.budget_ms,   file.atlas_pages, levels};
+  const CheckInput input{opened.scene, opened.hierarchy.rank, opened.target.model, file.camera, file.view_space,
+                         options,      file.spec.budget_ms,   file.atlas_pages,    levels};
   const CheckReport report = check_placement(input, file.placement, thread_count(context.spec), context.budget);
   if (context.arguments.json) {
     std::cout << check_json(report, opened.lods_bytes).dump(2) << "\n";

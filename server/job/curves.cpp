@@ -134,8 +134,8 @@ json select_curve(const SelectedImpostors& selected, const StageClock& clock) {
   const auto laps = last_laps(clock.laps("select"), selected.rounds.size(), 1);
   for (std::size_t i = 0; i < laps.size() && i < selected.rounds.size(); ++i)
     if (const double bytes = selected.rounds[i].real_bytes; bytes > 0.0)
-      curve.push_back(
-          point(laps[i], static_cast<double>(i + 1), (bytes - bound_bytes) / bytes, "gap to the lower bound at the sizes that the selection knew, share of the bytes"));
+      curve.push_back(point(laps[i], static_cast<double>(i + 1), (bytes - bound_bytes) / bytes,
+                            "gap to the lower bound at the sizes that the selection knew, share of the bytes"));
   return curve;
 }
 

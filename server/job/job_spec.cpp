@@ -106,8 +106,7 @@ SpecField boxes_field() {
           }};
 }
 
-std::vector<SpecField> make_fields() {
-  const json positive = above(0.0);
+std::vector<SpecField> scene_fields() {
   return {
       field("budget_ms", "--budget-ms", &JobSpec::budget_ms, "frame-time budget in milliseconds", at_least(0.0)),
       field("scene.up", "--up", &JobSpec::up, "axis that points up in the scene file", one_of({"auto", "x", "y", "z"})),
@@ -121,22 +120,34 @@ std::vector<SpecField> make_fields() {
       field("camera.fov_y_deg", "--fov-y-deg", &JobSpec::fov_y_deg, "vertical field of view in degrees", above(0.0, 150.0)),
       field("camera.width", "--width", &JobSpec::width, "image width in pixels", between(16, 8192)),
       field("camera.height", "--height", &JobSpec::height, "image height in pixels", between(16, 8192)),
+  };
+}
+
+std::vector<SpecField> view_space_fields() {
+  const json positive = above(0.0);
+  return {
       field("view_space.kind", "--view-space", &JobSpec::view_space, "auto, walk, orbit, path:FILE or boxes",
             {{"pattern", "^(auto|walk|orbit|boxes|path:.+)$"}}),
       field("view_space.path_radius_m", "--path-radius-m", &JobSpec::path_radius_m, "half side of the boxes around a path's points",
             positive),
       boxes_field(),
       field("view_space.leaf_m", "--leaf-m", &JobSpec::leaf_m, "side of a 3D leaf cell in metres", positive),
-      field("view_space.refine_levels", "--refine-levels", &JobSpec::refine_levels, "how often hot leaves are halved in position; their direction intervals are halved with every other halving",
-            between(0, 6)),
-      field("view_space.interval_deg", "--interval-deg", &JobSpec::interval_deg, "width of a view direction interval in degrees, in leaves that are not halved",
-            between(1.0, 90.0)),
+      field("view_space.refine_levels", "--refine-levels", &JobSpec::refine_levels,
+            "how often hot leaves are halved in position; their direction intervals are halved with every other halving", between(0, 6)),
+      field("view_space.interval_deg", "--interval-deg", &JobSpec::interval_deg,
+            "width of a view direction interval in degrees, in leaves that are not halved", between(1.0, 90.0)),
       field("view_space.eye_height_m", "--eye-height-m", &JobSpec::eye_height_m, "eye height above the ground, walk only", positive),
       field("view_space.max_leaves", "--max-leaves", &JobSpec::max_leaves, "leaves grow until there are fewer", between(1, 10'000'000)),
-      field("view_space.bounds", "--region-bounds", &JobSpec::region_bounds,
-            "what a region's bound looks at: sample (the surface samples that its views may see), object (all of each such object), or view "
-            "(single views that are sampled, with a margin of 5 %: no bound, nothing is promised)",
-            one_of({"sample", "object", "view"})),
+      field(
+          "view_space.bounds", "--region-bounds", &JobSpec::region_bounds,
+          "what a region's bound looks at: sample (the surface samples that its views may see), object (all of each such object), or view "
+          "(single views that are sampled, with a margin of 5 %: no bound, nothing is promised)",
+          one_of({"sample", "object", "view"})),
+  };
+}
+
+std::vector<SpecField> visibility_fields() {
+  return {
       field("visibility.mode", "--visibility", &JobSpec::visibility, "auto (where a probe finds occlusion), on or off",
             one_of({"auto", "on", "off"})),
       field("visibility.missed_share", "--visibility-missed-share", &JobSpec::visibility_missed_share,
@@ -147,6 +158,11 @@ std::vector<SpecField> make_fields() {
             one_of({"auto", "on", "off"})),
       field("lods.error_px", "--lods-error-px", &JobSpec::lods_error_px, "pixels by which a level of detail may move a point of the image",
             between(0.01, 64.0)),
+  };
+}
+
+std::vector<SpecField> candidate_fields() {
+  return {
       field("candidates.apex_deg", "--apex-deg", &JobSpec::apex_deg, "apex angles of shafts in degrees", {{"minItems", 1}}),
       field("candidates.direction_step_deg", "--direction-step-deg", &JobSpec::direction_step_deg, "step of shaft directions in degrees",
             between(1.0, 90.0)),
@@ -163,6 +179,11 @@ std::vector<SpecField> make_fields() {
             between(0, 10'000)),
       field("impostors.fuzzy", "--fuzzy", &JobSpec::fuzzy,
             "masked surfaces (leaves) without their outlines: trees stay as airy as they are, but impostors that hold them may show gaps"),
+  };
+}
+
+std::vector<SpecField> select_fields() {
+  return {
       field("select.keep_picks", "--keep-picks", &JobSpec::keep_picks, "keep all that the greedy picked: no reverse-delete"),
       field("select.guided_sweeps", "--guided-sweeps", &JobSpec::guided_sweeps,
             "sweeps of the lower bound's search before a second greedy at its prices; 0: no second greedy", between(0, 1000)),
@@ -180,6 +201,11 @@ std::vector<SpecField> make_fields() {
       field("select.bake_rounds", "--bake-rounds", &JobSpec::bake_rounds, "rounds of baking and repair", between(1, 20)),
       field("select.size_bakes", "--size-bakes", &JobSpec::size_bakes, "impostors baked to fit the size model; 0: default model",
             between(0, 10'000)),
+  };
+}
+
+std::vector<SpecField> run_fields() {
+  return {
       field("device", "--device", &JobSpec::device, "off-screen device", one_of({"osmesa", "egl"}), false),
       field("survey.views", "--survey-views", &JobSpec::survey_views, "sampled single views", between(1, 1e8)),
       field("verify.views", "--verify-views", &JobSpec::verify_views, "views that place renders for verification", between(0, 100'000),
@@ -199,6 +225,13 @@ std::vector<SpecField> make_fields() {
             json::object(), false),
       field("cache.update", "--update", &JobSpec::update, "delete what the job did not use from the cache's folder", json::object(), false),
   };
+}
+
+std::vector<SpecField> make_fields() {
+  std::vector<SpecField> all;
+  for (const auto& section : {scene_fields(), view_space_fields(), visibility_fields(), candidate_fields(), select_fields(), run_fields()})
+    all.insert(all.end(), section.begin(), section.end());
+  return all;
 }
 
 std::string type_of(const json& value) {

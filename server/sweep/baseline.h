@@ -34,8 +34,8 @@ struct CurveComparison {
 void require_same_subject(const CurveSubject& baseline, const CurveSubject& now, const std::string& source);
 
 /// A budget gets worse when it leaves more CPVs unsolved than before, or as many with memory above (1 + tolerance) times that of before.
-/// Where fewer are unsolved than before, memory is not compared: solving them costs some. Throws Failure(kBadUsage) where the curves have no
-/// budget in common.
+/// Where fewer are unsolved than before, memory is not compared: solving them costs some. Throws Failure(kBadUsage) where the curves have
+/// no budget in common.
 [[nodiscard]] CurveComparison compare_curves(const std::vector<CurvePoint>& before, const std::vector<CurvePoint>& now, double tolerance);
 
 /// "at 16 ms: 1200 bytes of texture before, 1500 now (+25 %)".

@@ -3,9 +3,9 @@
 //
 //   scene ─▶ survey ─▶ budgets, loose to tight: { problem views ─▶ candidates ─▶ selection ⇄ baking ─▶ point } ─▶ gates ─▶ files
 //
-// Shared are loading, visible sets, size models, the survey, all direction searches (search_memory.h) and the bakes that neighbouring budgets
-// have in common (bake_memory.h). Selections start afresh at each budget: one that went on from the looser budget's would differ from what
-// `place` gives, and selection takes the least of the seconds. Nothing is rendered: `place` verifies.
+// Shared are loading, visible sets, size models, the survey, all direction searches (search_memory.h) and the bakes that neighbouring
+// budgets have in common (bake_memory.h). Selections start afresh at each budget: one that went on from the looser budget's would differ
+// from what `place` gives, and selection takes the least of the seconds. Nothing is rendered: `place` verifies.
 #pragma once
 
 #include <filesystem>

@@ -3,8 +3,8 @@
 //
 //     environment_maps SCENE TARGET.json SIDE_M FAR_FIELD_M,.. [CELLS [VIEWS [MISSED_SHARE]]]
 //
-// The walkable view space is cut into cells of SIDE_M. From each, the visible objects that lie at least FAR_FIELD_M away are baked into at most
-// six layered impostors around the cell, all others stay as they are. So many CELLS, evenly spread, are baked; the bytes of all are
+// The walkable view space is cut into cells of SIDE_M. From each, the visible objects that lie at least FAR_FIELD_M away are baked into at
+// most six layered impostors around the cell, all others stay as they are. So many CELLS, evenly spread, are baked; the bytes of all are
 // extrapolated, with the standard error of the sum. A far field of `inf` leaves all as it is. Prints one object of JSON per far field.
 #include <algorithm>
 #include <cmath>
@@ -46,8 +46,8 @@ struct MappedCell {
 };
 
 struct WalkTimes {
-  double mean_ms = 0.0;   // predicted
-  double worst_ms = 0.0;  // predicted
+  double mean_ms = 0.0;    // predicted
+  double worst_ms = 0.0;   // predicted
   double region_ms = 0.0;  // greatest predicted bound of a region
 };
 
@@ -166,11 +166,16 @@ class Bench {
     }
     const auto cells = static_cast<double>(cell_count());
     const TimeModel& model = job_.target.model;
-    return {{"side_m", world_.view_space_options.leaf_m}, {"far_field_m", far_field_m},
-            {"cells", cell_count()},                      {"sampled", bytes.size()},
-            {"bytes", cells * mean},                      {"bytes_standard_error", cells * std::sqrt(variance / n)},
-            {"walk_mean_ms", all.mean_ms},                {"walk_worst_ms", all.worst_ms},
-            {"walk_worst_bound_ms", model.bound_ms(all.worst_ms)}, {"region_bound_ms", model.bound_ms(all.region_ms)}};
+    return {{"side_m", world_.view_space_options.leaf_m},
+            {"far_field_m", far_field_m},
+            {"cells", cell_count()},
+            {"sampled", bytes.size()},
+            {"bytes", cells * mean},
+            {"bytes_standard_error", cells * std::sqrt(variance / n)},
+            {"walk_mean_ms", all.mean_ms},
+            {"walk_worst_ms", all.worst_ms},
+            {"walk_worst_bound_ms", model.bound_ms(all.worst_ms)},
+            {"region_bound_ms", model.bound_ms(all.region_ms)}};
   }
 
   const Surveyed& job_;
@@ -189,7 +194,8 @@ class Bench {
 
 int main(int argc, char** argv) {
   using namespace standin;
-  if (argc < 5) return std::fprintf(stderr, "usage: environment_maps SCENE TARGET SIDE_M FAR_FIELD_M,.. [CELLS [VIEWS [MISSED_SHARE]]]\n"), 2;
+  if (argc < 5)
+    return std::fprintf(stderr, "usage: environment_maps SCENE TARGET SIDE_M FAR_FIELD_M,.. [CELLS [VIEWS [MISSED_SHARE]]]\n"), 2;
   try {
     JobSpec spec;
     spec.lods = "off";  // objects as the scene has them

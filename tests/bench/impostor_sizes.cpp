@@ -6,8 +6,8 @@
 // `sample` generates candidates as the survey does (regions above `share` of the worst predicted time), bakes a spread of them and writes
 // what was known before beside what came out. `compare` judges, scene by scene: the default model; a model fitted on all other files; the
 // default fitted on 48 bakes of the scene, judged on the rest, as place does; and the proven lower bound. Last it prints the laws fitted on
-// all files, which default_size_model() holds. `sample --techniques T` samples another technique; "default" in `compare` is the layered one's
-// all the same.
+// all files, which default_size_model() holds. `sample --techniques T` samples another technique; "default" in `compare` is the layered
+// one's all the same.
 #include <cmath>
 #include <cstdio>
 #include <fstream>
@@ -77,10 +77,7 @@ std::vector<Candidate> candidates_of(const World& world, const TimeModel& model,
   for (const Technique technique : techniques_of(arguments.spec)) sizes.offer(technique, default_size_model(technique));
   return clock
       .run("candidates",
-           [&] {
-             return generate_candidates(world.scene, world.hierarchy, probe, model, sizes, world.camera, world.quality,
-                                        options, {});
-           })
+           [&] { return generate_candidates(world.scene, world.hierarchy, probe, model, sizes, world.camera, world.quality, options, {}); })
       .candidates;
 }
 

@@ -1,9 +1,10 @@
-// The budget that a fixed subdivision of a scene has so many problem views at: the thesis' Table 5.1 begins with 9,078 at 16 ms, and only at
-// as many are its figures comparable with ours (table_5_1.md).
+// The budget that a fixed subdivision of a scene has so many problem views at: the thesis' Table 5.1 begins with 9,078 at 16 ms, and only
+// at as many are its figures comparable with ours (table_5_1.md).
 //
 //     reference_budget SCENE TARGET.json CPVS [MISSED_SHARE [CONFIG.toml]]
 //
-// Prints one object of JSON. The configuration (none: the defaults, not refined) must have view_space.refine_levels = 0: halved cells change with the budget.
+// Prints one object of JSON. The configuration (none: the defaults, not refined) must have view_space.refine_levels = 0: halved cells
+// change with the budget.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>

@@ -107,7 +107,8 @@ int main(int argc, char** argv) {
   std::vector<Ratios> found(regions);
   const Bench bench(world, model, subdivision, views);
   parallel_for(regions, world.threads, budget, [&](std::size_t i) { found[i] = bench.measure(i * subdivision.cpvs.size() / regions); });
-  std::printf("%zu of %zu problem regions, %u views each\n\n| | p10 | median | p90 |\n|---|---|---|---|\n", regions, subdivision.cpvs.size(), views);
+  std::printf("%zu of %zu problem regions, %u views each\n\n| | p10 | median | p90 |\n|---|---|---|---|\n", regions,
+              subdivision.cpvs.size(), views);
   print("bound over the worst view", found, &Ratios::looseness);
   print("objects' bounds over the dearest of each", found, &Ratios::bounds);
   print("the dearest of each over the dearest view", found, &Ratios::sum);

@@ -78,7 +78,8 @@ TEST(RegionSample, DemandIsThatOfTheWorstViewsWithAMarginAndBelowTheBoundWithOne
   const RegionEstimator by_view(scene, rank, model, camera, options);
   int below = 0;
   for (const CellKey& key : cells.leaves()) {
-    CellCosts certified = by_sample.cell_costs(cells.chain(key), rank), sampled = by_view.cell_costs(cells.chain(key), rank, cells.parts(key));
+    CellCosts certified = by_sample.cell_costs(cells.chain(key), rank),
+              sampled = by_view.cell_costs(cells.chain(key), rank, cells.parts(key));
     for (int i = 0; i < 4; ++i) {
       const DirectionInterval interval{Face::kPosX, 2, i, 2};
       const RegionBound bound = by_sample.region_bound(certified, interval), demand = by_view.region_bound(sampled, interval);
@@ -86,7 +87,8 @@ TEST(RegionSample, DemandIsThatOfTheWorstViewsWithAMarginAndBelowTheBoundWithOne
       below += demand.predicted_ms < 0.999 * bound.predicted_ms ? 1 : 0;
       double fresh_ms = 0.0;
       RegionViews region(cells.parts(key), interval, Rng(kSeed));
-      for (int v = 0; v < 100; ++v) fresh_ms = std::max(fresh_ms, model.predicted_ms(by_view.features().frame(rank, region.view(region.draw()))));
+      for (int v = 0; v < 100; ++v)
+        fresh_ms = std::max(fresh_ms, model.predicted_ms(by_view.features().frame(rank, region.view(region.draw()))));
       // Few views miss much in a cell of 20 m with a tree in it: no promise.
       EXPECT_GE(demand.predicted_ms, 0.5 * std::min(bound.predicted_ms, (1.0 + kSampledMargin) * fresh_ms));
       EXPECT_EQ(demand.predicted_ms, by_view.region_bound(sampled, interval).predicted_ms);

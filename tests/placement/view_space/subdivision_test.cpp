@@ -10,6 +10,7 @@
 #include "placement/view_space/cell_locator.h"
 #include "render/base/error.h"
 #include "tests/support/ascii_world.h"
+#include "tests/support/same_subdivision.h"
 
 namespace standin {
 namespace {
@@ -99,28 +100,6 @@ TEST(Subdivision, NothingIsSlowWithinAGenerousBudgetAndTheWorstRegionIsStillKnow
   EXPECT_EQ(found.cells[0].worst_interval.face, Face::kPosX);
 }
 
-void expect_same(const Subdivision& a, const Subdivision& b) {
-  ASSERT_EQ(a.cells.size(), b.cells.size());
-  for (std::size_t c = 0; c < a.cells.size(); ++c) {
-    EXPECT_EQ(a.cells[c].key, b.cells[c].key);
-    EXPECT_EQ(a.cells[c].worst_predicted_ms, b.cells[c].worst_predicted_ms);
-    EXPECT_EQ(a.cells[c].worst_interval, b.cells[c].worst_interval);
-  }
-  EXPECT_EQ(a.intervals, b.intervals);
-  ASSERT_EQ(a.cpvs.size(), b.cpvs.size());
-  for (std::size_t p = 0; p < a.cpvs.size(); ++p) {
-    EXPECT_EQ(a.cpvs[p].cell, b.cpvs[p].cell);
-    EXPECT_EQ(a.cpvs[p].interval, b.cpvs[p].interval);
-    EXPECT_EQ(a.cpvs[p].predicted_ms, b.cpvs[p].predicted_ms);
-    EXPECT_EQ(a.cpvs[p].first_term, b.cpvs[p].first_term);
-  }
-  ASSERT_EQ(a.terms.size(), b.terms.size());
-  for (std::size_t t = 0; t < a.terms.size(); ++t) {
-    EXPECT_EQ(a.terms[t].object, b.terms[t].object);
-    EXPECT_EQ(a.terms[t].predicted_ms, b.terms[t].predicted_ms);
-  }
-}
-
 // In whatever order the budgets come: what was searched for a tighter one serves, and for a looser one is searched anew.
 TEST(Subdivision, MemoryOfOtherBudgetsChangesNothing) {
   const World world = small_town(2);
@@ -131,7 +110,7 @@ TEST(Subdivision, MemoryOfOtherBudgetsChangesNothing) {
   for (const double share : {0.8, 0.5, 0.9, 0.65, 0.5, 0.3, 1.1}) {
     const Subdivision fresh = world.subdivide_for(share * worst, model);
     cpvs.insert(fresh.cpvs.size());
-    expect_same(world.subdivide_for(share * worst, model, {}, {}, &memory), fresh);
+    test::expect_same(world.subdivide_for(share * worst, model, {}, {}, &memory), fresh);
   }
   EXPECT_GE(cpvs.size(), 5U);
 }
@@ -239,7 +218,8 @@ TEST(Subdivision, BoundsHoldForEverySampledView) {
       view.direction = glm::normalize(view.direction);
       const auto cell = locator.find(view.position);
       ASSERT_TRUE(cell.has_value());
-      const Cpv& cpv = regions.at({keys[*cell], interval_of(view.direction, direction_level(2, keys[*cell].level - world.space.leaf_level))});
+      const Cpv& cpv =
+          regions.at({keys[*cell], interval_of(view.direction, direction_level(2, keys[*cell].level - world.space.leaf_level))});
       const double predicted_ms = model.predicted_ms(features.frame(world.all(), view));
       ASSERT_LE(predicted_ms, cpv.predicted_ms * (1 + 1e-12)) << "view " << i;
       tightest = std::max(tightest, predicted_ms / cpv.predicted_ms);
@@ -344,7 +324,7 @@ TEST(Subdivision, TheSameForAnyNumberOfThreads) {
   const Subdivision one = world.subdivide_for(budget_ms, model, {}, options);
   options.threads = 3;
   const Subdivision three = world.subdivide_for(budget_ms, model, {}, options);
-  expect_same(one, three);
+  test::expect_same(one, three);
 }
 
 TEST(Subdivision, VisibilityOnlyRemovesProblemViews) {
@@ -398,8 +378,7 @@ TEST(Subdivision, TheSmallerLinearFormIsChosen) {
     std::vector<Cost> costs_in;
     for (const std::uint32_t i : seen) costs_in.push_back(costs.objects[i].cost);
     const DirectionInterval& interval = found.intervals[cpv.interval];
-    for (const DirectionInterval& node : {interval.parent(), interval})
-      ASSERT_TRUE(estimator.sharpen(costs, node, seen, costs_in, -1.0));
+    for (const DirectionInterval& node : {interval.parent(), interval}) ASSERT_TRUE(estimator.sharpen(costs, node, seen, costs_in, -1.0));
     RegionSums sums = estimator.empty_frame();
     for (const Cost& cost : costs_in) sums.add(cost);
     EXPECT_EQ(cpv.pixels_capped, sums.capped_ms < sums.with_pixels_ms);

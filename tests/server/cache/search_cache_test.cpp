@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "tests/support/ascii_world.h"
+#include "tests/support/same_subdivision.h"
 #include "tests/support/temp_folder.h"
 
 namespace standin {
@@ -46,28 +47,6 @@ struct Town {
   [[nodiscard]] SearchScene job() const { return {scene, rank, visibility, model, camera, options}; }
 };
 
-void expect_same(const Subdivision& a, const Subdivision& b) {
-  ASSERT_EQ(a.cells.size(), b.cells.size());
-  for (std::size_t c = 0; c < a.cells.size(); ++c) {
-    EXPECT_EQ(a.cells[c].key, b.cells[c].key);
-    EXPECT_EQ(a.cells[c].worst_predicted_ms, b.cells[c].worst_predicted_ms);
-    EXPECT_EQ(a.cells[c].worst_interval, b.cells[c].worst_interval);
-  }
-  EXPECT_EQ(a.intervals, b.intervals);
-  ASSERT_EQ(a.cpvs.size(), b.cpvs.size());
-  for (std::size_t p = 0; p < a.cpvs.size(); ++p) {
-    EXPECT_EQ(a.cpvs[p].pixels_capped, b.cpvs[p].pixels_capped);
-    EXPECT_EQ(a.cpvs[p].constant_ms, b.cpvs[p].constant_ms);
-    EXPECT_EQ(a.cpvs[p].predicted_ms, b.cpvs[p].predicted_ms);
-    EXPECT_EQ(a.cpvs[p].term_count, b.cpvs[p].term_count);
-  }
-  ASSERT_EQ(a.terms.size(), b.terms.size());
-  for (std::size_t t = 0; t < a.terms.size(); ++t) {
-    EXPECT_EQ(a.terms[t].object, b.terms[t].object);
-    EXPECT_EQ(a.terms[t].predicted_ms, b.terms[t].predicted_ms);
-  }
-}
-
 class SearchCaches : public test::TempFolder {
  protected:
   /// A job of its own over the folder.
@@ -89,7 +68,7 @@ TEST_F(SearchCaches, JobsOfAnyBudgetFindTheSameWithAndWithout) {
   for (const double share : {0.8, 0.5, 0.9, 0.65, 0.5, 0.3, 1.1}) {
     const Subdivision fresh = town.subdivide_for(share * worst, nullptr);
     cpvs.insert(fresh.cpvs.size());
-    expect_same(subdivide_for(town, share * worst), fresh);
+    test::expect_same(subdivide_for(town, share * worst), fresh);
   }
   EXPECT_GE(cpvs.size(), 5U);
 }
@@ -128,7 +107,7 @@ TEST_F(SearchCaches, AnObjectThatACellCannotSeeDoesNotConcernIt) {
     set.clear();
     for (std::uint32_t id = sees_it ? 0 : 1; id <= last; ++id) set.push_back(id);
   }
-  expect_same(subdivide_for(after, budget_ms), after.subdivide_for(budget_ms, nullptr));
+  test::expect_same(subdivide_for(after, budget_ms), after.subdivide_for(budget_ms, nullptr));
   EXPECT_GT(counts_.hits, 0U);
   EXPECT_GT(counts_.misses, 0U);
   EXPECT_LT(counts_.misses, searched);
