@@ -1,6 +1,7 @@
 #include "placement/select/lagrangian_bound.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -15,7 +16,8 @@ constexpr int kPlainSweeps = 2;  // after the first, before the first step
 constexpr double kFirstFactor = 1.0;
 constexpr int kPatience = 6;  // steps without gain before they are shortened
 constexpr double kShorter = 0.6;
-constexpr float kKept = 0.95F;  // of the use so far, each time a constraint is visited
+constexpr double kWorthwhileGain = 1e-3;  // of the known solution's bytes, by kPatience steps together: with less the search ends
+constexpr float kKept = 0.95F;            // of the use so far, each time a constraint is visited
 constexpr float kLeastShare = 0.005F;
 
 // All sweeps together pass over so many gains at most, less than a minute: with a thousand million of them the bound would take longer than
@@ -201,8 +203,13 @@ bool improve(BytesSplit& split, double aim_bytes, int iterations, const WorkBudg
   double factor = kFirstFactor;
   int without_gain = 0;
   bool finished = true;
+  std::array<double, kPatience> recent{};  // best values, one for each of the latest steps
+  recent.fill(-std::numeric_limits<double>::infinity());
   for (int i = 0; i <= sweeps && finished; ++i) {
     const double before = split.best_value();
+    double& long_ago = recent[static_cast<std::size_t>(i) % kPatience];
+    if (i > kPlainSweeps + kPatience && before - long_ago < kWorthwhileGain * aim_bytes) break;
+    long_ago = before;
     const std::uint64_t work_before = split.work();
     if (i <= kPlainSweeps)
       split.sweep(budget);

@@ -88,8 +88,8 @@ class BytesSplit {
   std::uint64_t work_ = 0;
 };
 
-/// Sweeps and steps on the best split; `aim_bytes`: of a known solution (it scales the steps). On very large problems fewer than
-/// `iterations` are made. Returns false when the work limit ended it.
+/// Sweeps and steps on the best split; `aim_bytes`: of a known solution (it scales the steps). Fewer than `iterations` are made on
+/// very large problems, and where the latest ones gained next to nothing of these bytes. Returns false when the work limit ended it.
 bool improve(BytesSplit& split, double aim_bytes, int iterations, const WorkBudget& budget, SelectionWork& work);
 
 /// Never above the optimum: rounding is charged to the bound.
