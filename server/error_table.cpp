@@ -19,6 +19,22 @@ constexpr std::array kRows = {
     ErrorRow{ErrorWord::kDeviceUnavailable, "device_unavailable", 3, 503},
     ErrorRow{ErrorWord::kImpostorImpossible, "impostor_impossible", 2, 422},
     ErrorRow{ErrorWord::kCancelled, "cancelled", 3, 499},
+    ErrorRow{ErrorWord::kBadRequest, "bad_request", 2, 400},
+    ErrorRow{ErrorWord::kUnauthorized, "unauthorized", 2, 401},
+    ErrorRow{ErrorWord::kForbidden, "forbidden", 2, 403},
+    ErrorRow{ErrorWord::kNotFound, "not_found", 2, 404},
+    ErrorRow{ErrorWord::kMethodNotAllowed, "method_not_allowed", 2, 405},
+    ErrorRow{ErrorWord::kNotFinished, "not_finished", 2, 409},
+    ErrorRow{ErrorWord::kKeyReused, "key_reused", 2, 422},
+    ErrorRow{ErrorWord::kTooLarge, "too_large", 2, 413},
+    ErrorRow{ErrorWord::kMediaUnsupported, "media_unsupported", 2, 415},
+    ErrorRow{ErrorWord::kRangeUnsatisfiable, "range_unsatisfiable", 2, 416},
+    ErrorRow{ErrorWord::kQueueFull, "queue_full", 3, 429},
+    ErrorRow{ErrorWord::kBusy, "busy", 3, 503},
+    ErrorRow{ErrorWord::kDiskFull, "disk_full", 3, 507},
+    ErrorRow{ErrorWord::kDeadlinePassed, "deadline_passed", 3, 504},
+    ErrorRow{ErrorWord::kWorkerLost, "worker_lost", 3, 500},
+    ErrorRow{ErrorWord::kServerUnreachable, "server_unreachable", 3, 502},
     ErrorRow{ErrorWord::kInternal, "internal", 3, 500},
 };
 
@@ -28,6 +44,12 @@ const ErrorRow& error_row(ErrorWord word) {
   for (const auto& row : kRows)
     if (row.word == word) return row;
   return kRows.back();
+}
+
+ErrorWord word_named(std::string_view name) {
+  for (const auto& row : kRows)
+    if (row.name == name) return row.word;
+  return ErrorWord::kInternal;
 }
 
 }  // namespace standin

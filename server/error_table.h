@@ -15,5 +15,7 @@ struct ErrorRow {
 };
 
 [[nodiscard]] const ErrorRow& error_row(ErrorWord word);
+/// The word of that name; kInternal for names of other versions.
+[[nodiscard]] ErrorWord word_named(std::string_view name);
 
 }  // namespace standin

@@ -24,6 +24,23 @@ enum class ErrorWord {
   kDeviceUnavailable,   // no context, or another device than the one asked for
   kImpostorImpossible,  // cluster and view cell allow no impostor
   kCancelled,           // stopped by the user
+  // Of the service.
+  kBadRequest,          // not HTTP, JSON or a query that can be understood
+  kUnauthorized,        // no token, or an unknown one
+  kForbidden,           // another origin's page, or a name that is not this server's
+  kNotFound,            // no such route, job, upload or artifact, or not the caller's
+  kMethodNotAllowed,    // the route knows other methods
+  kNotFinished,         // asks of a job what only a finished one has, or allows
+  kKeyReused,           // an Idempotency-Key that came with another body
+  kTooLarge,            // a body, or a scene, above a limit
+  kMediaUnsupported,    // a body of a type that the route does not take
+  kRangeUnsatisfiable,  // a byte range beyond the end
+  kQueueFull,           // as many jobs wait as may
+  kBusy,                // as many event streams or uploads are open as may
+  kDiskFull,            // the quota of the data folder
+  kDeadlinePassed,      // a job took longer than it may
+  kWorkerLost,          // a worker process ended without a word
+  kServerUnreachable,   // seen by a client
   kInternal,
 };
 

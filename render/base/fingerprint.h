@@ -62,12 +62,13 @@ class Fingerprinter {
     return add_bytes(values.data(), values.size() * sizeof(T));
   }
 
+  /// Bytes as they are, without their number: what comes in pieces.
+  Fingerprinter& add_bytes(const void* data, std::size_t size);
+
   /// Of all that was fed, which may go on.
   [[nodiscard]] Fingerprint fingerprint() const;
 
  private:
-  Fingerprinter& add_bytes(const void* data, std::size_t size);
-
   struct State;
   std::unique_ptr<State> state_;
 };

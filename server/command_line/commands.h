@@ -13,6 +13,39 @@
 
 namespace standin {
 
+/// Of `serve`. Sizes and times as people say them.
+struct ServiceArguments {
+  std::string data = "standin-data";
+  std::string listen = "127.0.0.1:8080";
+  std::string tokens;
+  std::string scenes;
+  std::string targets;
+  std::string web;  // empty: beside the program
+  std::uint32_t workers = 1;
+  std::uint32_t queue = 100;
+  std::uint32_t attempts = 5;
+  double deadline_minutes = 0.0;
+  double keep_days = 30.0;
+  double upload_mb = 2000.0;
+  double quota_gb = 50.0;
+  double cache_gb = 10.0;
+  double worker_memory_gb = 8.0;
+  double worker_cpu_hours = 24.0;
+  std::uint32_t streams = 200;
+  std::uint32_t connections = 1000;
+};
+
+/// Of the commands that speak to a service.
+struct ClientArguments {
+  std::string server = "http://127.0.0.1:8080";
+  std::string kind = "place";
+  std::string scene_name;  // of the server's folder
+  std::string target_name;
+  std::string label;
+  std::string job;  // its id
+  bool wait = false;
+};
+
 /// What the words after a command said.
 struct CommandArguments {
   std::vector<std::string> scenes;
@@ -36,6 +69,10 @@ struct CommandArguments {
   std::string osm;                   // make-city: folder of vector tiles; empty: a generated city
   std::string furniture;             // make-city --osm: folder of unpacked catalogues
   std::uint32_t judged_views = 500;  // verify
+  ServiceArguments service;          // serve
+  ClientArguments client;            // submit, status, fetch, cancel
+  std::string work_folder;           // work
+  std::uint32_t work_parent = 0;
   bool json = false;
   bool explain = false;
   bool self_test = false;
@@ -57,5 +94,11 @@ int bake_command(const CommandContext& context);
 int check_command(const CommandContext& context);
 int verify_command(const CommandContext& context);
 int report_command(const CommandContext& context);
+int serve_command(const CommandContext& context);
+int work_command(const CommandContext& context);
+int submit_command(const CommandContext& context);
+int status_command(const CommandContext& context);
+int fetch_command(const CommandContext& context);
+int cancel_command(const CommandContext& context);
 
 }  // namespace standin

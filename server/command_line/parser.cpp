@@ -17,6 +17,9 @@ const std::vector<std::string> kPlanSections = {"budget_ms",  "scene",     "came
 // Each budget is the command's own, and nothing is rendered.
 const std::vector<std::string> kSweepSections = {"scene",  "camera", "view_space", "visibility", "lods",  "candidates", "impostors",
                                                  "select", "survey", "sweep",      "seed",       "force", "threads",    "cache"};
+// What any kind of job takes; the service knows which.
+const std::vector<std::string> kSubmitSections = {"budget_ms", "scene",  "camera", "view_space", "visibility", "lods", "candidates",
+                                                  "impostors", "select", "survey", "sweep",      "verify",     "seed", "force"};
 const std::vector<std::string> kBakeSections = {"scene", "camera", "impostors", "device", "seed", "threads"};
 const std::vector<std::string> kTimingSections = {"scene", "camera", "device", "seed", "threads"};
 
@@ -223,6 +226,77 @@ void add_result_commands(Grammar& grammar) {
   report.run(report_command);
 }
 
+void add_service_commands(Grammar& grammar) {
+  auto serve = grammar.command("serve", "the HTTP service: jobs over HTTP, and a web page");
+  ServiceArguments& service = serve.arguments().service;
+  const auto option = [&](const char* flag, auto& value, const char* help) {
+    return serve.app.add_option(flag, value, help)->capture_default_str();
+  };
+  option("--data", service.data, "folder of jobs, uploads and results");
+  option("--listen", service.listen, "ADDRESS:PORT; port 0: any that is free; other than loopback needs --tokens");
+  option("--tokens", service.tokens, "file of lines OWNER SHA256-OF-TOKEN; each owner sees the own jobs only");
+  option("--scenes", service.scenes, "folder of scenes that clients may name");
+  option("--targets", service.targets, "folder of target files that clients may name");
+  option("--web", service.web, "folder of the page; default: web, beside the program");
+  option("--workers", service.workers, "jobs that run at a time")->check(CLI::Range(1, 64));
+  option("--queue", service.queue, "jobs that may wait")->check(CLI::Range(1, 1'000'000));
+  option("--attempts", service.attempts, "workers that may be lost before a job fails")->check(CLI::Range(1, 1000));
+  option("--deadline-minutes", service.deadline_minutes, "that a job may take; 0: as long as it takes")->check(CLI::Range(0.0, 1e6));
+  option("--keep-days", service.keep_days, "from a job's end to its removal; 0: for ever")->check(CLI::Range(0.0, 1e5));
+  option("--upload-mb", service.upload_mb, "that one upload may have")->check(CLI::Range(0.001, 1e6));
+  option("--quota-gb", service.quota_gb, "that uploads and results may have together")->check(CLI::Range(0.001, 1e6));
+  option("--cache-gb", service.cache_gb, "that stage caches may have together")->check(CLI::Range(0.0, 1e6));
+  option("--worker-memory-gb", service.worker_memory_gb, "that a job may have; 0: no limit")->check(CLI::Range(0.0, 1e5));
+  option("--worker-cpu-hours", service.worker_cpu_hours, "processor hours that a job may use; 0: no limit")->check(CLI::Range(0.0, 1e5));
+  option("--streams", service.streams, "event streams that may be open")->check(CLI::Range(1, 100'000));
+  option("--connections", service.connections, "connections that may be open")->check(CLI::Range(1, 100'000));
+  serve.run(serve_command);
+
+  auto work = grammar.command("work", "one job of the service, in its folder (the service starts it)");
+  work.app.group("");  // not for people
+  work.app.add_option("FOLDER", work.arguments().work_folder)->required();
+  work.app.add_option("PARENT", work.arguments().work_parent)->required();
+  work.run(work_command);
+}
+
+void add_client_commands(Grammar& grammar) {
+  auto submit = grammar.command("submit", "submit a job to a service: prints its id");
+  ClientArguments& client = submit.arguments().client;
+  submit.app.add_option("--kind", client.kind, "kind of job")
+      ->check(CLI::IsMember({"survey", "place", "sweep", "calibrate", "verify", "bake"}))
+      ->capture_default_str();
+  submit.app.add_option("--scene", submit.arguments().scenes, "scene file; uploaded unless the service has it")->expected(1);
+  submit.app.add_option("--scene-name", client.scene_name, "a scene of the service's folder")->excludes("--scene");
+  submit.app.add_option("--target", submit.arguments().target, "target file; uploaded unless the service has it");
+  submit.app.add_option("--target-name", client.target_name, "a target file of the service's folder")->excludes("--target");
+  submit.app.add_option("--baseline", submit.arguments().baseline, "sweep: an earlier sweep.json");
+  submit.app.add_option("--job", client.job, "verify: the id of the place job to look at");
+  submit.app.add_option("--label", client.label, "a word for people");
+  submit.app.add_option("--seconds", submit.arguments().seconds, "calibrate: seconds of timed renders, at most")
+      ->check(CLI::Range(1.0, 3600.0));
+  submit.app.add_option("--objects", submit.arguments().objects, "bake: object ids, as 1,2,5-9");
+  submit.app.add_option("--view-cell", submit.arguments().view_cell, "bake: shaft:DX,DY,DZ,APEX_DEG,MIN_DISTANCE or box:X0,Y0,Z0,X1,Y1,Z1");
+  submit.app.add_flag("--wait", client.wait, "wait for its end, showing how far it is; exit as the local command would");
+  submit.output("result folder: waits, and fetches the result", false);
+  submit.spec_flags(kSubmitSections);
+  submit.json();
+  submit.run(submit_command);
+
+  auto status = grammar.command("status", "how a job of a service is");
+  auto fetch = grammar.command("fetch", "the result of a job of a service");
+  auto cancel = grammar.command("cancel", "cancel a job of a service");
+  for (auto* builder : {&status, &fetch, &cancel}) builder->app.add_option("JOB", client.job, "its id")->required();
+  for (auto* builder : {&submit, &status, &fetch, &cancel})
+    builder->app.add_option("--server", client.server, "http://HOST:PORT; a token comes from the environment, STANDIN_TOKEN")
+        ->capture_default_str();
+  status.app.add_flag("--wait", client.wait, "wait for its end; exit as the local command would");
+  status.json();
+  fetch.output("result folder");
+  status.run(status_command);
+  fetch.run(fetch_command);
+  cancel.run(cancel_command);
+}
+
 // Words nobody understood explain more than what CLI11 misses for lack of them.
 std::string complaint(const CLI::App& app, const CLI::ParseError& error) {
   const std::vector<std::string> words = app.remaining(true);
@@ -242,6 +316,8 @@ ParsedCommand parse_command_line(int argc, char** argv) {
   add_input_commands(grammar);
   add_planning_commands(grammar);
   add_result_commands(grammar);
+  add_service_commands(grammar);
+  add_client_commands(grammar);
   try {
     grammar.app.parse(argc, argv);
   } catch (const CLI::Success& done) {

@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "render/base/error.h"
+#include "server/job/value_check.h"
 
 namespace standin {
 namespace {
@@ -235,50 +236,6 @@ std::vector<SpecField> make_fields() {
   return all;
 }
 
-std::string type_of(const json& value) {
-  return value.type_name();
-}
-
-[[noreturn]] void reject(const std::string& place, const json& value, const std::string& constraint) {
-  throw Failure(ErrorWord::kBadConfig, place + " = " + value.dump() + " violates: " + constraint);
-}
-
-void check_type(const json& schema, const json& value, const std::string& place) {
-  const std::string type = schema.at("type");
-  const bool ok = (type == "string" && value.is_string()) || (type == "number" && value.is_number()) ||
-                  (type == "integer" &&
-                   (value.is_number_integer() || (value.is_number_float() && value.get<double>() == std::floor(value.get<double>())))) ||
-                  (type == "boolean" && value.is_boolean()) || (type == "array" && value.is_array()) ||
-                  (type == "object" && value.is_object());
-  if (!ok) reject(place, value, "a value of type " + type + ", got " + type_of(value));
-}
-
-void check_number(const json& schema, const json& value, const std::string& place) {
-  const double number = value.get<double>();
-  if (!std::isfinite(number)) reject(place, value, "a finite number");
-  if (schema.contains("minimum") && number < schema["minimum"]) reject(place, value, ">= " + schema["minimum"].dump());
-  if (schema.contains("exclusiveMinimum") && number <= schema["exclusiveMinimum"])
-    reject(place, value, "> " + schema["exclusiveMinimum"].dump());
-  if (schema.contains("maximum") && number > schema["maximum"]) reject(place, value, "<= " + schema["maximum"].dump());
-}
-
-void check_string(const json& schema, const json& value, const std::string& place) {
-  if (schema.contains("enum") && std::ranges::find(schema["enum"], value) == schema["enum"].end())
-    reject(place, value, "one of " + schema["enum"].dump());
-}
-
-void check_value(const json& schema, const json& value, const std::string& place) {
-  check_type(schema, value, place);
-  if (value.is_number()) check_number(schema, value, place);
-  if (value.is_string()) check_string(schema, value, place);
-  if (!value.is_array()) return;
-  if (schema.contains("minItems") && value.size() < schema["minItems"])
-    reject(place, value, "at least " + schema["minItems"].dump() + " items");
-  if (schema.contains("maxItems") && value.size() > schema["maxItems"])
-    reject(place, value, "at most " + schema["maxItems"].dump() + " items");
-  for (std::size_t i = 0; i < value.size(); ++i) check_value(schema.at("items"), value[i], place + "[" + std::to_string(i) + "]");
-}
-
 json::json_pointer pointer_of(const std::string& key) {
   std::string path = "/" + key;
   for (auto& c : path)
@@ -304,7 +261,7 @@ std::optional<std::vector<Technique>> parse_techniques(const std::string& text) 
 /// The same techniques are the same job, in whatever order they are named.
 std::string in_order(const json& value, const std::string& place) {
   const auto techniques = parse_techniques(value);
-  if (!techniques) reject(place, value, "one or more of layered, tdm, planar, lod-sprite, with commas between");
+  if (!techniques) reject_value(place, value, "one or more of layered, tdm, planar, lod-sprite, with commas between");
   std::string text;
   for (const Technique technique : *techniques) text += (text.empty() ? "" : ",") + std::string(technique_name(technique));
   return text;
@@ -355,7 +312,7 @@ void set_field(JobSpec& spec, const SpecField& field, const json& value, const s
     const std::string kind = value;
     const bool known =
         kind == "auto" || kind == "walk" || kind == "orbit" || kind == "boxes" || (kind.starts_with("path:") && kind.size() > 5);
-    if (!known) reject(place, value, "auto, walk, orbit, boxes or path:FILE");
+    if (!known) reject_value(place, value, "auto, walk, orbit, boxes or path:FILE");
   }
   field.set(spec, field.key == "impostors.techniques" ? json(in_order(value, place)) : value);
 }
@@ -370,7 +327,7 @@ void set_field_from_text(JobSpec& spec, const SpecField& field, const std::strin
       value.push_back(text);
     } else {
       value = json::parse(type == "array" ? "[" + text + "]" : text, nullptr, false);
-      if (value.is_discarded()) reject(field.flag, text, "a value of type " + type);
+      if (value.is_discarded()) reject_value(field.flag, text, "a value of type " + type);
     }
   }
   set_field(spec, field, value, field.flag);

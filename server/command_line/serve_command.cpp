@@ -1,0 +1,78 @@
+// serve: the HTTP service; work: one job of it, in a process of its own.
+#include <unistd.h>
+
+#include <charconv>
+#include <cstdio>
+#include <filesystem>
+
+#include "render/base/error.h"
+#include "server/command_line/commands.h"
+#include "server/service/service.h"
+#include "server/service/work_folder.h"
+
+namespace standin {
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path this_program() {
+  return fs::read_symlink("/proc/self/exe");
+}
+
+std::uint64_t bytes_of(double amount, double unit) {
+  return static_cast<std::uint64_t>(amount * unit);
+}
+
+void listen_at(const std::string& text, ServiceConfig& config) {
+  const std::size_t colon = text.rfind(':');
+  unsigned port = 0;
+  const char* end = text.data() + text.size();
+  const bool readable =
+      colon != std::string::npos && std::from_chars(text.data() + colon + 1, end, port).ptr == end && colon + 1 < text.size();
+  if (!readable || port > 65535) throw Failure(ErrorWord::kBadUsage, "--listen " + text + ": ADDRESS:PORT is expected");
+  config.address = text.substr(0, colon);
+  config.port = static_cast<std::uint16_t>(port);
+}
+
+ServiceConfig config_of(const ServiceArguments& arguments) {
+  constexpr double kMb = 1e6, kGb = 1e9;
+  ServiceConfig config;
+  listen_at(arguments.listen, config);
+  config.data = arguments.data;
+  config.tokens = arguments.tokens;
+  config.scenes = arguments.scenes;
+  config.targets = arguments.targets;
+  config.most_queued = arguments.queue;
+  config.scheduler.program = this_program();
+  config.scheduler.workers = static_cast<int>(arguments.workers);
+  config.scheduler.most_attempts = static_cast<int>(arguments.attempts);
+  config.scheduler.deadline_s = 60.0 * arguments.deadline_minutes;
+  config.scheduler.keep_s = 24.0 * 3600.0 * arguments.keep_days;
+  config.scheduler.most_cache_bytes = bytes_of(arguments.cache_gb, kGb);
+  config.scheduler.limits.data_bytes = bytes_of(arguments.worker_memory_gb, kGb);
+  config.scheduler.limits.cpu_s = bytes_of(arguments.worker_cpu_hours, 3600.0);
+  config.api.web = arguments.web.empty() ? this_program().parent_path() / "web" : fs::path(arguments.web);
+  config.api.most_upload_bytes = bytes_of(arguments.upload_mb, kMb);
+  config.api.quota_bytes = bytes_of(arguments.quota_gb, kGb);
+  config.api.most_streams = arguments.streams;
+  config.http.connections = arguments.connections;
+  return config;
+}
+
+}  // namespace
+
+int serve_command(const CommandContext& context) {
+  ServiceConfig config = config_of(context.arguments.service);
+  const std::string address = config.address;
+  serve(std::move(config), context.budget, [&](std::uint16_t port) {
+    std::printf("http://%s:%u\n", address.c_str(), static_cast<unsigned>(port));
+    std::fflush(stdout);
+  });
+  return 0;
+}
+
+int work_command(const CommandContext& context) {
+  return work(context.arguments.work_folder, static_cast<pid_t>(context.arguments.work_parent));
+}
+
+}  // namespace standin

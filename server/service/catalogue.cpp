@@ -1,0 +1,42 @@
+#include "server/service/catalogue.h"
+
+#include "render/base/error.h"
+
+namespace standin {
+
+namespace fs = std::filesystem;
+
+void Catalogue::refresh() {
+  if (folder_.empty()) return;
+  std::map<std::string, Entry> found;
+  std::error_code gone;
+  for (const auto& entry : fs::directory_iterator(folder_, gone)) {
+    const std::string name = entry.path().filename().string();
+    if (name.starts_with('.') || entry.is_symlink(gone) || !entry.is_regular_file(gone)) continue;
+    const auto written = entry.last_write_time(gone);
+    const auto bytes = entry.file_size(gone);
+    if (gone) continue;
+    const auto known = entries_.find(name);
+    if (known != entries_.end() && known->second.written == written && known->second.file.bytes == bytes)
+      found[name] = known->second;
+    else
+      found[name] = {written, blobs_.copy(entry.path(), name)};
+  }
+  const std::scoped_lock lock(mutex_);
+  entries_ = std::move(found);
+}
+
+std::optional<StoredFile> Catalogue::find(const std::string& name) const {
+  const std::scoped_lock lock(mutex_);
+  const auto found = entries_.find(name);
+  return found == entries_.end() ? std::nullopt : std::optional(found->second.file);
+}
+
+std::vector<StoredFile> Catalogue::files() const {
+  const std::scoped_lock lock(mutex_);
+  std::vector<StoredFile> files;
+  for (const auto& [name, entry] : entries_) files.push_back(entry.file);
+  return files;
+}
+
+}  // namespace standin

@@ -1,0 +1,96 @@
+// SQLite as this house uses it: one connection, values bound by position, failures as exceptions.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+
+struct sqlite3;
+struct sqlite3_stmt;
+
+namespace standin {
+
+/// A prepared statement at work: bind values in the order of its question marks, then step() through the rows.
+class Query {
+ public:
+  Query(sqlite3* database, const std::string& sql);
+
+  Query& bind(std::int64_t value);
+  Query& bind(double value);
+  Query& bind(std::string_view text);
+  template <class T>
+  Query& bind(const std::optional<T>& value) {
+    return value ? bind(*value) : bind_null();
+  }
+  Query& bind_null();
+
+  /// True: there is a row, whose columns are counted from 0.
+  bool step();
+  /// Runs it to its end.
+  void run();
+  [[nodiscard]] std::int64_t integer(int column) const;
+  [[nodiscard]] double real(int column) const;
+  [[nodiscard]] std::string text(int column) const;
+  [[nodiscard]] bool is_null(int column) const;
+
+ private:
+  struct Finalize {
+    void operator()(sqlite3_stmt* statement) const;
+  };
+  void check(int code) const;
+
+  sqlite3* database_;
+  std::unique_ptr<sqlite3_stmt, Finalize> statement_;
+  int bound_ = 0;
+};
+
+/// Not to be used by two threads at a time.
+class Database {
+ public:
+  /// Opens or creates the file, in WAL mode: what is committed survives the process, and the machine.
+  explicit Database(const std::filesystem::path& file);
+  ~Database();
+  Database(const Database&) = delete;
+  Database& operator=(const Database&) = delete;
+
+  void execute(const std::string& sql);
+  /// `sql` with one question mark for each of `values`.
+  template <class... Values>
+  Query query(const std::string& sql, const Values&... values) {
+    Query query(database_, sql);
+    (query.bind(values), ...);
+    return query;
+  }
+  template <class... Values>
+  void run(const std::string& sql, const Values&... values) {
+    Query query(database_, sql);
+    (query.bind(values), ...);
+    query.run();
+  }
+  /// Rows that the last statement changed.
+  [[nodiscard]] int changes() const;
+  [[nodiscard]] std::int64_t last_row() const;
+
+ private:
+  sqlite3* database_ = nullptr;
+};
+
+/// All or nothing: rolled back unless committed.
+class Transaction {
+ public:
+  explicit Transaction(Database& database) : database_(database) { database_.execute("BEGIN IMMEDIATE"); }
+  ~Transaction();
+  Transaction(const Transaction&) = delete;
+  Transaction& operator=(const Transaction&) = delete;
+  void commit();
+
+ private:
+  Database& database_;
+  bool open_ = true;
+};
+
+}  // namespace standin
