@@ -152,9 +152,10 @@ class Scheduler::Attempt {
     fs::remove_all(folder_);
   }
 
+  // Whoever sees its end finds the disk released.
   void end(const JobEnd& end) {
-    scheduler_.jobs_.finish(job_.id, end);
     fs::remove_all(folder_);
+    scheduler_.jobs_.finish(job_.id, end);
   }
 
   Scheduler& scheduler_;

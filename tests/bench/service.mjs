@@ -1,0 +1,229 @@
+// What the service withstands, and what it costs (service.md holds results).
+//
+//     node tests/bench/service.mjs kill   BINARY SCENE [JOBS] [KILLS] [SEED]
+//     node tests/bench/service.mjs cancel BINARY SCENE [CANCELS] [SEED]
+//     node tests/bench/service.mjs load   BINARY SCENE [POLLERS] [STREAMS] [SECONDS]
+//
+// kill: server or worker, in turn by chance, at random moments over a queue of jobs: none lost, none doubled, no orphan, the bytes of an
+// undisturbed run. cancel: at random moments: how long it takes, what is left. load: clients that poll and listen while a job runs: errors, the
+// server's memory and processor time, and the 99th percentile of GET /v1/jobs/{id} beside that of an idle server. Exits with 1 where a promise is broken.
+import { spawn, spawnSync } from "node:child_process";
+import { createHash } from "node:crypto";
+import { cpSync, existsSync, mkdtempSync, mkdirSync, readFileSync, readdirSync, rmSync } from "node:fs";
+import { Agent, request } from "node:http";
+import { tmpdir } from "node:os";
+import { basename, dirname, join, resolve } from "node:path";
+import { fileURLToPath } from "node:url";
+
+const source = resolve(dirname(fileURLToPath(import.meta.url)), "../..");
+const [, , what, binary, scene, ...numbers] = process.argv;
+const folder = mkdtempSync(join(tmpdir(), "standin-service-"));
+const scenes = join(folder, "scenes");
+mkdirSync(scenes);
+cpSync(scene, join(scenes, basename(scene)));
+const children = new Set();
+process.on("exit", () => {
+  children.forEach((child) => child.kill("SIGKILL"));
+  rmSync(folder, { recursive: true, force: true });
+});
+
+/** Of [0, 1), by a seed (mulberry32). */
+function random(seed) {
+  return () => {
+    seed = (seed + 0x6d2b79f5) | 0;
+    let t = Math.imul(seed ^ (seed >>> 15), 1 | seed);
+    t = (t + Math.imul(t ^ (t >>> 7), 61 | t)) ^ t;
+    return ((t ^ (t >>> 14)) >>> 0) / 4294967296;
+  };
+}
+const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
+
+let child;
+async function serve(...more) {
+  child = spawn(binary, ["serve", "--data", join(folder, "data"), "--listen", "127.0.0.1:0", "--scenes", scenes, "--targets", join(source, "configs/targets"), "--attempts", "1000", ...more], { stdio: ["ignore", "pipe", "inherit"] });
+  const own = child;
+  children.add(own);
+  own.once("exit", () => children.delete(own));
+  return new Promise((done, fail) => {
+    own.stdout.once("data", (text) => done(String(text).trim()));
+    own.once("exit", (code) => fail(new Error(`serve ended with ${code}`)));
+  });
+}
+async function killServer(signal) {
+  const gone = new Promise((done) => child.once("exit", done));
+  child.kill(signal);
+  await gone;
+}
+const json = async (answer) => answer.json();
+const get = async (url) => json(await fetch(url));
+const post = async (url, body) => json(await fetch(url, { method: "POST", body: JSON.stringify(body), headers: { "Content-Type": "application/json" } }));
+const ended = ({ state }) => !["queued", "running"].includes(state);
+
+const spec = { budget_ms: 52, view_space: { leaf_m: 46, refine_levels: 0 }, verify: { views: 0 }, survey: { views: 200 }, visibility: { mode: "off" } };
+const place = (seed, more = {}) => ({ kind: "place", scene: { name: basename(scene) }, target: { name: "reference.json" }, spec: { ...spec, seed, ...more } });
+
+/** Processes that run a job in this bench's folder. */
+function workers() {
+  const found = [];
+  for (const id of readdirSync("/proc").filter((name) => /^\d+$/.test(name))) {
+    try {
+      const words = readFileSync(`/proc/${id}/cmdline`, "utf8").split("\0");
+      if (words[1] === "work" && words[2].startsWith(folder)) found.push(Number(id));
+    } catch {} // it has ended
+  }
+  return found;
+}
+const promise = (held, sentence) => {
+  console.log(`${held ? "held  " : "BROKEN"} ${sentence}`);
+  if (!held) process.exitCode = 1;
+};
+const quantile = (values, share) => values.sort((a, b) => a - b)[Math.min(values.length - 1, Math.floor(share * values.length))];
+
+async function artifacts(url, id) {
+  const { state, error, artifacts: files } = await get(`${url}/v1/jobs/${id}`);
+  return { state, error, sums: Object.fromEntries(files.filter(({ path }) => ["placement.json", "impostors.glb"].includes(path)).map(({ path, sha256 }) => [path, sha256])) };
+}
+
+async function kill(jobs = 20, kills = 50, seed = 1) {
+  const chance = random(seed);
+  let url = await serve();
+  const ids = [];
+  for (let i = 0; i < jobs; ++i) ids.push((await post(`${url}/v1/jobs`, place(i + 1))).id);
+  const done = { server: 0, worker: 0 };
+  let orphans = 0;
+  while (done.server + done.worker < kills) {
+    await sleep(100 + 1500 * chance());
+    if (chance() < 0.5) {
+      const of = workers()[0];
+      if (of === undefined) continue;
+      process.kill(of, "SIGKILL");
+      ++done.worker;
+    } else {
+      await killServer("SIGKILL");
+      ++done.server;
+      await sleep(300);
+      orphans += workers().length;
+      url = await serve();
+    }
+    if ((await Promise.all(ids.map((id) => get(`${url}/v1/jobs/${id}`)))).every(ended)) break;
+  }
+  const all = await get(`${url}/v1/jobs?limit=200`);
+  promise(all.jobs.length === jobs && new Set(all.jobs.map(({ id }) => id)).size === jobs, `${jobs} jobs submitted, ${all.jobs.length} known after ${done.server} kills of the server and ${done.worker} of a worker`);
+  for (let i = 0; i < 6000 && !(await Promise.all(ids.map((id) => get(`${url}/v1/jobs/${id}`)))).every(ended); ++i) await sleep(200);
+  const disturbed = await Promise.all(ids.map((id) => artifacts(url, id)));
+  await killServer("SIGTERM");
+  promise(orphans === 0 && workers().length === 0, `${orphans} orphans after the server's death`);
+  promise(readdirSync(join(folder, "data/work")).length === 0, "no work folder is left");
+  promise(disturbed.every(({ state }) => state === "succeeded"), `states: ${[...new Set(disturbed.map(({ state, error }) => state + (error ? ` (${error.detail})` : "")))].join(", ")}`);
+
+  rmSync(join(folder, "data"), { recursive: true });
+  url = await serve();
+  const calm = [];
+  for (let i = 0; i < jobs; ++i) calm.push((await post(`${url}/v1/jobs`, place(i + 1))).id);
+  while (!(await Promise.all(calm.map((id) => get(`${url}/v1/jobs/${id}`)))).every(ended)) await sleep(200);
+  const undisturbed = await Promise.all(calm.map((id) => artifacts(url, id)));
+  const same = disturbed.filter(({ sums }, i) => JSON.stringify(sums) === JSON.stringify(undisturbed[i].sums) && Object.keys(sums).length === 2).length;
+  promise(same === jobs, `${same} of ${jobs} results have the bytes of an undisturbed run`);
+  await killServer("SIGTERM");
+}
+
+async function cancel(cancels = 20, seed = 1) {
+  const chance = random(seed);
+  const url = await serve();
+  const took = [];
+  for (let i = 0; i < cancels; ++i) {
+    const { id } = await post(`${url}/v1/jobs`, place(i + 1, { visibility: { mode: "on" }, survey: { views: 20000 } }));
+    while ((await get(`${url}/v1/jobs/${id}`)).state === "queued") await sleep(10);
+    await sleep(6000 * chance());
+    const start = performance.now();
+    await post(`${url}/v1/jobs/${id}/cancel`, {});
+    let job;
+    while (!ended((job = await get(`${url}/v1/jobs/${id}`)))) await sleep(5);
+    if (job.state === "cancelled") took.push(performance.now() - start);
+    await fetch(`${url}/v1/jobs/${id}`, { method: "DELETE" });
+  }
+  promise(took.length > 0 && Math.max(...took) <= 2000, `${took.length} of ${cancels} were cancelled before their end: median ${quantile(took, 0.5).toFixed(0)} ms, slowest ${Math.max(...took).toFixed(0)} ms`);
+  promise(workers().length === 0 && readdirSync(join(folder, "data/work")).length === 0, "no worker and no work folder is left");
+  await killServer("SIGTERM");
+}
+
+const agent = new Agent({ keepAlive: true, maxSockets: Infinity });
+function timedGet(url) {
+  return new Promise((done, fail) => {
+    const start = performance.now();
+    request(url, { agent }, (answer) => {
+      answer.resume();
+      answer.on("end", () => done({ status: answer.statusCode, ms: performance.now() - start }));
+    })
+      .on("error", fail)
+      .end();
+  });
+}
+const cpu_s = (id) => {
+  const fields = readFileSync(`/proc/${id}/stat`, "utf8").split(") ")[1].split(" ");
+  return (Number(fields[11]) + Number(fields[12])) / 100;
+};
+const rss_mb = (id) => Number(readFileSync(`/proc/${id}/status`, "utf8").match(/VmRSS:\s+(\d+)/)[1]) / 1e3;
+const workerCpu_s = async (url) => Number((await (await fetch(`${url}/metrics`)).text()).match(/worker_cpu_seconds_total ([\d.e+-]+)/)[1]);
+
+/** `pollers` clients ask every half second, each on a connection of its own. */
+async function poll(url, id, pollers, seconds) {
+  const times = [], wrong = [];
+  const until = performance.now() + 1e3 * seconds;
+  await Promise.all(
+    Array.from({ length: pollers }, async (_, i) => {
+      await sleep((500 * i) / pollers);
+      while (performance.now() < until) {
+        try {
+          const { status, ms } = await timedGet(`${url}/v1/jobs/${id}`);
+          times.push(ms);
+          if (status !== 200) wrong.push(status);
+        } catch (error) {
+          wrong.push(error.code);
+        }
+        await sleep(500);
+      }
+    }),
+  );
+  return { times, wrong };
+}
+
+async function load(pollers = 200, streams = 50, seconds = 60) {
+  const url = await serve();
+  const first = await post(`${url}/v1/jobs`, place(1));
+  while (!ended(await get(`${url}/v1/jobs/${first.id}`))) await sleep(100);
+  const idle = await poll(url, first.id, pollers, Math.min(20, seconds));
+  const rssBefore = rss_mb(child.pid);
+  const jobs = [];
+  for (let i = 0; i < 50; ++i) jobs.push((await post(`${url}/v1/jobs`, place(100 + i, { visibility: { mode: "on" }, survey: { views: 20000 } }))).id);
+  let heard = 0, refused = 0;
+  const listening = new AbortController();
+  const listeners = Array.from({ length: streams }, async () => {
+    try {
+      const answer = await fetch(`${url}/v1/jobs/${jobs[0]}/events`, { signal: listening.signal });
+      if (answer.status !== 200) ++refused;
+      for await (const piece of answer.body) heard += piece.length > 0 ? 1 : 0;
+    } catch {} // the end of the bench
+  });
+  const before = { server: cpu_s(child.pid), worker: await workerCpu_s(url), start: performance.now() };
+  const busy = await poll(url, jobs[0], pollers, seconds);
+  const worker = workers().map(cpu_s).reduce((a, b) => a + b, 0) + (await workerCpu_s(url)) - before.worker;
+  const server = cpu_s(child.pid) - before.server;
+  const wall_s = (performance.now() - before.start) / 1e3;
+  listening.abort();
+  await Promise.all(listeners);
+  const p99 = { idle: quantile(idle.times, 0.99), busy: quantile(busy.times, 0.99) };
+  promise(busy.wrong.length === 0 && refused === 0, `${busy.times.length} requests of ${pollers} clients in ${wall_s.toFixed(1)} s beside ${streams} event streams (${heard} pieces heard): ${busy.wrong.length} errors, ${refused} refused`);
+  promise(server <= 0.05 * worker, `server ${server.toFixed(2)} s of processor time, ${((1e3 * server) / busy.times.length).toFixed(3)} s for 1,000 requests; workers ${worker.toFixed(1)} s: ${((100 * server) / worker).toFixed(1)} %`);
+  console.log(`       GET /v1/jobs/{id}: median ${quantile(busy.times, 0.5).toFixed(2)} ms, p99 ${p99.busy.toFixed(2)} ms; idle server: median ${quantile(idle.times, 0.5).toFixed(2)}, p99 ${p99.idle.toFixed(2)} ms; ratio of p99 ${(p99.busy / p99.idle).toFixed(2)}`);
+  console.log(`       memory of the server: ${rssBefore.toFixed(1)} MB before, ${rss_mb(child.pid).toFixed(1)} MB after`);
+  await killServer("SIGTERM");
+  promise(workers().length === 0, "no worker is left");
+}
+
+if (!existsSync(binary ?? "") || !["kill", "cancel", "load"].includes(what)) {
+  console.error("node tests/bench/service.mjs kill|cancel|load BINARY SCENE ...");
+  process.exit(2);
+}
+await { kill, cancel, load }[what](...numbers.map(Number));
+process.exit();
