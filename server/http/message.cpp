@@ -95,7 +95,7 @@ void TextBody::write(std::string_view piece) {
 }
 
 HttpResponse json_response(int status, const json& object) {
-  return {status, {{"Content-Type", "application/json"}}, object.dump(1, ' ', false, json::error_handler_t::replace)};
+  return {status, {{"Content-Type", "application/json"}}, object.dump(-1, ' ', false, json::error_handler_t::replace)};
 }
 
 json problem_of(ErrorWord word, const std::string& detail) {

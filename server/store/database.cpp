@@ -15,14 +15,14 @@ constexpr int kWait_ms = 5000;  // for another process, such as a backup
 
 }  // namespace
 
-Query::Query(sqlite3* database, const std::string& sql) : database_(database) {
-  sqlite3_stmt* statement = nullptr;
-  check(sqlite3_prepare_v2(database, sql.c_str(), static_cast<int>(sql.size()), &statement, nullptr));
-  statement_.reset(statement);
+void PreparedStatement::Finalize::operator()(sqlite3_stmt* statement) const {
+  sqlite3_finalize(statement);
 }
 
-void Query::Finalize::operator()(sqlite3_stmt* statement) const {
-  sqlite3_finalize(statement);
+void Query::GiveBack::operator()(PreparedStatement* prepared) const {
+  sqlite3_reset(prepared->statement.get());
+  sqlite3_clear_bindings(prepared->statement.get());
+  prepared->lent = false;
 }
 
 void Query::check(int code) const {
@@ -30,27 +30,27 @@ void Query::check(int code) const {
 }
 
 Query& Query::bind(std::int64_t value) {
-  check(sqlite3_bind_int64(statement_.get(), ++bound_, value));
+  check(sqlite3_bind_int64(statement(), ++bound_, value));
   return *this;
 }
 
 Query& Query::bind(double value) {
-  check(sqlite3_bind_double(statement_.get(), ++bound_, value));
+  check(sqlite3_bind_double(statement(), ++bound_, value));
   return *this;
 }
 
 Query& Query::bind(std::string_view text) {
-  check(sqlite3_bind_text64(statement_.get(), ++bound_, text.data(), text.size(), SQLITE_TRANSIENT, SQLITE_UTF8));
+  check(sqlite3_bind_text64(statement(), ++bound_, text.data(), text.size(), SQLITE_TRANSIENT, SQLITE_UTF8));
   return *this;
 }
 
 Query& Query::bind_null() {
-  check(sqlite3_bind_null(statement_.get(), ++bound_));
+  check(sqlite3_bind_null(statement(), ++bound_));
   return *this;
 }
 
 bool Query::step() {
-  const int code = sqlite3_step(statement_.get());
+  const int code = sqlite3_step(statement());
   if (code != SQLITE_ROW && code != SQLITE_DONE) fail(database_);
   return code == SQLITE_ROW;
 }
@@ -61,20 +61,20 @@ void Query::run() {
 }
 
 std::int64_t Query::integer(int column) const {
-  return sqlite3_column_int64(statement_.get(), column);
+  return sqlite3_column_int64(statement(), column);
 }
 
 double Query::real(int column) const {
-  return sqlite3_column_double(statement_.get(), column);
+  return sqlite3_column_double(statement(), column);
 }
 
 std::string Query::text(int column) const {
-  const auto* bytes = reinterpret_cast<const char*>(sqlite3_column_text(statement_.get(), column));
-  return bytes == nullptr ? std::string() : std::string(bytes, static_cast<std::size_t>(sqlite3_column_bytes(statement_.get(), column)));
+  const auto* bytes = reinterpret_cast<const char*>(sqlite3_column_text(statement(), column));
+  return bytes == nullptr ? std::string() : std::string(bytes, static_cast<std::size_t>(sqlite3_column_bytes(statement(), column)));
 }
 
 bool Query::is_null(int column) const {
-  return sqlite3_column_type(statement_.get(), column) == SQLITE_NULL;
+  return sqlite3_column_type(statement(), column) == SQLITE_NULL;
 }
 
 Database::Database(const std::filesystem::path& file) {
@@ -90,7 +90,19 @@ Database::Database(const std::filesystem::path& file) {
 }
 
 Database::~Database() {
+  statements_.clear();
   sqlite3_close(database_);
+}
+
+PreparedStatement& Database::prepared(const std::string& sql) {
+  const auto [first, last] = statements_.equal_range(sql);
+  for (auto known = first; known != last; ++known)
+    if (!known->second.lent) return known->second;
+  sqlite3_stmt* statement = nullptr;
+  if (sqlite3_prepare_v2(database_, sql.c_str(), static_cast<int>(sql.size()), &statement, nullptr) != SQLITE_OK) fail(database_);
+  PreparedStatement& made = statements_.emplace(sql, PreparedStatement{})->second;
+  made.statement.reset(statement);
+  return made;
 }
 
 void Database::execute(const std::string& sql) {

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -14,10 +15,19 @@ struct sqlite3_stmt;
 
 namespace standin {
 
+/// A statement that is prepared once, and lent to one Query at a time.
+struct PreparedStatement {
+  struct Finalize {
+    void operator()(sqlite3_stmt* statement) const;
+  };
+  std::unique_ptr<sqlite3_stmt, Finalize> statement;
+  bool lent = false;
+};
+
 /// A prepared statement at work: bind values in the order of its question marks, then step() through the rows.
 class Query {
  public:
-  Query(sqlite3* database, const std::string& sql);
+  Query(sqlite3* database, PreparedStatement& prepared) : database_(database), prepared_(&prepared) { prepared.lent = true; }
 
   Query& bind(std::int64_t value);
   Query& bind(double value);
@@ -38,13 +48,14 @@ class Query {
   [[nodiscard]] bool is_null(int column) const;
 
  private:
-  struct Finalize {
-    void operator()(sqlite3_stmt* statement) const;
+  struct GiveBack {
+    void operator()(PreparedStatement* prepared) const;
   };
   void check(int code) const;
+  [[nodiscard]] sqlite3_stmt* statement() const { return prepared_->statement.get(); }
 
   sqlite3* database_;
-  std::unique_ptr<sqlite3_stmt, Finalize> statement_;
+  std::unique_ptr<PreparedStatement, GiveBack> prepared_;
   int bound_ = 0;
 };
 
@@ -61,22 +72,23 @@ class Database {
   /// `sql` with one question mark for each of `values`.
   template <class... Values>
   Query query(const std::string& sql, const Values&... values) {
-    Query query(database_, sql);
+    Query query(database_, prepared(sql));
     (query.bind(values), ...);
     return query;
   }
   template <class... Values>
   void run(const std::string& sql, const Values&... values) {
-    Query query(database_, sql);
-    (query.bind(values), ...);
-    query.run();
+    query(sql, values...).run();
   }
   /// Rows that the last statement changed.
   [[nodiscard]] int changes() const;
   [[nodiscard]] std::int64_t last_row() const;
 
  private:
+  PreparedStatement& prepared(const std::string& sql);
+
   sqlite3* database_ = nullptr;
+  std::multimap<std::string, PreparedStatement> statements_;  // by their SQL; several where one is lent while it is asked for again
 };
 
 /// All or nothing: rolled back unless committed.
