@@ -103,6 +103,7 @@ class Api : public HttpApplication {
 
   [[nodiscard]] Job job_of(const Exchange& exchange);
   [[nodiscard]] nlohmann::json document_of(const Job& job);
+  [[nodiscard]] nlohmann::json dry_run(const JobRequest& request, const NewJob& job);
   [[nodiscard]] StoredFile resolve(const FileReference& file, const Catalogue* catalogue, const std::string& owner, const char* pointer);
   [[nodiscard]] StoredFile made_by_job(const std::string& owner, const std::string& id, JobKind kind, const std::string& name,
                                        const char* pointer);

@@ -108,6 +108,7 @@ json Api::document_of(const Job& job) {
                    {"attempts", job.attempts},
                    {"cancel_asked", job.cancel_asked},
                    {"best_so_far", job.best_so_far},
+                   {"used", job.used ? json{{"cpu_s", job.used->cpu_s}, {"peak_rss_bytes", job.used->peak_rss_bytes}} : json(nullptr)},
                    {"error", job.problem},
                    {"request", job.request},
                    {"scene", nullptr},
@@ -157,6 +158,16 @@ std::map<std::string, StoredFile> Api::inputs_of(const JobRequest& request, cons
   return inputs;
 }
 
+json Api::dry_run(const JobRequest& request, const NewJob& job) {
+  json document = {{"valid", true}, {"kind", job.kind}, {"spec", to_json(request.spec, false)}, {"predicted", nullptr}};
+  const auto scene = job.inputs.find("scene");
+  if (scene == job.inputs.end()) return document;
+  const JobPrediction predicted = jobs_.predict(job.owner, job.kind, scene->second.bytes);
+  if (predicted.jobs > 0)
+    document["predicted"] = {{"seconds", predicted.seconds}, {"peak_rss_bytes", predicted.peak_rss_bytes}, {"from_jobs", predicted.jobs}};
+  return document;
+}
+
 HttpResponse Api::submit(const Exchange& exchange) {
   const JobRequest request = parse_job_request(exchange.body);
   const std::string& owner = exchange.request.owner;
@@ -164,8 +175,7 @@ HttpResponse Api::submit(const Exchange& exchange) {
   if (key.size() > kMostKeyBytes)
     throw Failure(ErrorWord::kBadRequest, "an Idempotency-Key of more than " + std::to_string(kMostKeyBytes) + " bytes");
   const NewJob job{owner, std::string(kind_name(request.kind)), request.label, exchange.body, inputs_of(request, owner)};
-  if (request.dry_run)
-    return json_response(200, {{"valid", true}, {"kind", job.kind}, {"spec", to_json(request.spec, false)}, {"predicted", nullptr}});
+  if (request.dry_run) return json_response(200, dry_run(request, job));
   const Submission made = jobs_.submit(job, key);
   if (!made.replayed) hooks_.queue_changed();
   HttpResponse response = json_response(202, document_of(made.job));

@@ -94,6 +94,7 @@ class Scheduler::Attempt {
       }
     }
     signal_ = worker.signal();
+    used_ = worker.used();
   }
 
   [[nodiscard]] Why reason_to_stop(Clock::time_point start) const {
@@ -141,7 +142,7 @@ class Scheduler::Attempt {
 
   void succeed(bool aim_met) {
     const std::scoped_lock lock(scheduler_.collecting_);
-    JobEnd end{.state = JobState::kSucceeded, .aim_met = aim_met, .problem = {}, .artifacts = {}};
+    JobEnd end{.state = JobState::kSucceeded, .aim_met = aim_met, .problem = {}, .artifacts = {}, .used = used_};
     if (fs::is_directory(folder_ / "out"))
       for (const auto& entry : fs::directory_iterator(folder_ / "out"))
         if (entry.is_regular_file() && !entry.path().filename().string().starts_with('.'))
@@ -153,7 +154,8 @@ class Scheduler::Attempt {
   }
 
   // Whoever sees its end finds the disk released.
-  void end(const JobEnd& end) {
+  void end(JobEnd end) {
+    end.used = used_;
     fs::remove_all(folder_);
     scheduler_.jobs_.finish(job_.id, end);
   }
@@ -163,6 +165,7 @@ class Scheduler::Attempt {
   const fs::path folder_;
   Why why_ = Why::kNone;
   int signal_ = 0;
+  std::optional<JobUse> used_;
   std::string stage_;
   Clock::time_point reported_;
 };

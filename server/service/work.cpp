@@ -15,6 +15,7 @@
 #include "render/device/timing_lock.h"
 #include "server/error_table.h"
 #include "server/http/message.h"
+#include "server/service/bundle.h"
 #include "server/service/work_folder.h"
 
 namespace standin {
@@ -71,12 +72,15 @@ int run_command(JobKind kind, const CommandContext& context) {
   return 3;
 }
 
-CommandContext context_of(const WorkOrder& order, const fs::path& folder) {
+CommandContext context_of(const WorkOrder& order, const fs::path& folder, const WorkBudget& budget) {
   CommandContext context;
   context.spec = order.spec;
+  context.budget = budget;
   CommandArguments& arguments = context.arguments;
   apply_arguments(order.kind, order.arguments, arguments);
-  if (const fs::path scene = input_file(folder, "scene"); !scene.empty()) arguments.scenes = {scene.string()};
+  fs::path scene = input_file(folder, "scene");
+  if (is_bundle(scene)) scene = unpack_bundle(scene, folder / "unpacked", {}, budget);
+  if (!scene.empty()) arguments.scenes = {scene.string()};
   arguments.target = input_file(folder, "target").string();
   arguments.baseline = input_file(folder, "baseline").string();
   arguments.output = (order.kind == JobKind::kCalibrate ? folder / "out/target.json" : folder / "out").string();
@@ -102,9 +106,8 @@ json outcome_of(const fs::path& folder, pid_t parent, int progress) {
     const WorkOrder order = work_order_from_json(json::parse(read_file(folder / kOrderFile)));
     confine_this_process(order.limits, parent);
     ProgressLines lines(progress);
-    CommandContext context = context_of(order, folder);
-    context.budget = WorkBudget(&stop_requested, [&](std::string_view stage, double fraction) { lines(stage, fraction); });
-    const int exit_code = run_command(order.kind, context);
+    const WorkBudget budget(&stop_requested, [&](std::string_view stage, double fraction) { lines(stage, fraction); });
+    const int exit_code = run_command(order.kind, context_of(order, folder, budget));
     if (order.kind == JobKind::kVerify) {
       fs::create_directories(folder / "out");
       fs::rename(folder / "inputs/placed/verify.json", folder / "out/verify.json");

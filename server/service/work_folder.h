@@ -2,6 +2,7 @@
 //
 //   job.json        what to do (WorkOrder)
 //   inputs/ROLE/    the files it reads, linked from the blob store under the names that the client gave
+//   unpacked/       the scene, where it came as an archive (bundle.h)
 //   out/            the result, whole or not at all
 //   outcome.json    how it ended, written last: a worker without one has not ended by itself
 //   stdout.json     what the command printed

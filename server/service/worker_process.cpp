@@ -87,7 +87,7 @@ std::vector<std::string> WorkerProcess::lines(std::chrono::milliseconds wait) {
 }
 
 bool WorkerProcess::ended() {
-  if (!ended_) ended_ = ::waitpid(id_, &status_, WNOHANG) == id_;
+  if (!ended_) ended_ = ::wait4(id_, &status_, WNOHANG, &usage_) == id_;
   return ended_;
 }
 
@@ -97,6 +97,11 @@ void WorkerProcess::ask_to_stop() const {
 
 void WorkerProcess::kill() const {
   if (!ended_) ::kill(id_, SIGKILL);
+}
+
+JobUse WorkerProcess::used() const {
+  const auto seconds = [](const timeval& time) { return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec); };
+  return {seconds(usage_.ru_utime) + seconds(usage_.ru_stime), static_cast<std::uint64_t>(usage_.ru_maxrss) * 1024};
 }
 
 int WorkerProcess::signal() const {

@@ -1,12 +1,15 @@
 // A worker as its server sees it: a child process that says how far it is and ends on request.
 #pragma once
 
+#include <sys/resource.h>
 #include <sys/types.h>
 
 #include <chrono>
 #include <filesystem>
 #include <string>
 #include <vector>
+
+#include "server/store/job_record.h"
 
 namespace standin {
 
@@ -29,6 +32,8 @@ class WorkerProcess {
   [[nodiscard]] pid_t id() const { return id_; }
   /// The signal that ended it; 0: none.
   [[nodiscard]] int signal() const;
+  /// Of one that has ended.
+  [[nodiscard]] JobUse used() const;
 
  private:
   pid_t id_ = -1;
@@ -36,6 +41,7 @@ class WorkerProcess {
   std::string partial_;
   bool ended_ = false;
   int status_ = 0;
+  rusage usage_{};
 };
 
 }  // namespace standin

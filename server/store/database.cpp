@@ -44,6 +44,14 @@ Query& Query::bind(std::string_view text) {
   return *this;
 }
 
+Query& Query::bind(const std::optional<std::int64_t>& value) {
+  return value.has_value() ? bind(*value) : bind_null();
+}
+
+Query& Query::bind(const std::optional<double>& value) {
+  return value.has_value() ? bind(*value) : bind_null();
+}
+
 Query& Query::bind_null() {
   check(sqlite3_bind_null(statement(), ++bound_));
   return *this;

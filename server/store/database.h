@@ -32,10 +32,8 @@ class Query {
   Query& bind(std::int64_t value);
   Query& bind(double value);
   Query& bind(std::string_view text);
-  template <class T>
-  Query& bind(const std::optional<T>& value) {
-    return value ? bind(*value) : bind_null();
-  }
+  Query& bind(const std::optional<std::int64_t>& value);
+  Query& bind(const std::optional<double>& value);
   Query& bind_null();
 
   /// True: there is a row, whose columns are counted from 0.

@@ -42,6 +42,12 @@ struct NewJob {
   std::map<std::string, StoredFile> inputs;  // by role: "scene", "target" ...
 };
 
+/// What a job's last worker used.
+struct JobUse {
+  double cpu_s = 0.0;
+  std::uint64_t peak_rss_bytes = 0;
+};
+
 struct Job {
   std::string id;
   std::string owner;
@@ -59,6 +65,7 @@ struct Job {
   std::optional<bool> aim_met;  // of a job that succeeded
   nlohmann::json problem;       // of one that failed: {"word", "detail"}; null
   nlohmann::json best_so_far;   // null before there is any
+  std::optional<JobUse> used;   // of one that ended
 };
 
 struct JobEvent {
@@ -72,6 +79,14 @@ struct JobEnd {
   std::optional<bool> aim_met;
   nlohmann::json problem;
   std::vector<StoredFile> artifacts;
+  std::optional<JobUse> used = {};
+};
+
+/// What a job of this kind and scene is likely to take, by earlier ones.
+struct JobPrediction {
+  double seconds = 0.0;
+  double peak_rss_bytes = 0.0;
+  int jobs = 0;  // that it goes by; 0: nothing is known
 };
 
 }  // namespace standin

@@ -2,6 +2,7 @@
 
 #include <sys/random.h>
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <stdexcept>
@@ -20,7 +21,8 @@ CREATE TABLE job (
   number INTEGER PRIMARY KEY AUTOINCREMENT, id TEXT NOT NULL UNIQUE, owner TEXT NOT NULL, kind TEXT NOT NULL, label TEXT NOT NULL,
   request TEXT NOT NULL, state TEXT NOT NULL, stage TEXT NOT NULL DEFAULT '', fraction REAL NOT NULL DEFAULT 0,
   created_ms INTEGER NOT NULL, started_ms INTEGER, finished_ms INTEGER, attempts INTEGER NOT NULL DEFAULT 0,
-  cancel_asked INTEGER NOT NULL DEFAULT 0, aim_met INTEGER, problem TEXT NOT NULL DEFAULT 'null', best_so_far TEXT NOT NULL DEFAULT 'null');
+  cancel_asked INTEGER NOT NULL DEFAULT 0, aim_met INTEGER, problem TEXT NOT NULL DEFAULT 'null', best_so_far TEXT NOT NULL DEFAULT 'null',
+  cpu_s REAL, peak_rss_bytes INTEGER);
 CREATE INDEX job_by_state ON job (state, number);
 CREATE TABLE job_file (
   job TEXT NOT NULL REFERENCES job (id) ON DELETE CASCADE, purpose TEXT NOT NULL, role TEXT NOT NULL, name TEXT NOT NULL,
@@ -36,7 +38,7 @@ CREATE TABLE upload (
 constexpr const char* kJobColumns =
     "number, id, owner, kind, label, request, state, stage, fraction, created_ms, started_ms, finished_ms, attempts, cancel_asked, "
     "aim_met, "
-    "problem, best_so_far";
+    "problem, best_so_far, cpu_s, peak_rss_bytes";
 constexpr std::array kStateNames = {"queued", "running", "succeeded", "failed", "cancelled"};
 
 void create_or_check(Database& database, const std::filesystem::path& file) {
@@ -166,6 +168,7 @@ Job JobStore::job_at(Query& row) const {
   if (!row.is_null(14)) job.aim_met = row.integer(14) != 0;
   job.problem = json::parse(row.text(15));
   job.best_so_far = json::parse(row.text(16));
+  if (!row.is_null(17)) job.used = JobUse{row.real(17), static_cast<std::uint64_t>(row.integer(18))};
   return job;
 }
 
@@ -265,8 +268,12 @@ void JobStore::report(const std::string& id, const std::string& stage, double fr
 }
 
 void JobStore::end_locked(const std::string& id, const JobEnd& end) {
-  database_.run("UPDATE job SET state = ?, aim_met = ?, problem = ?, finished_ms = ?, fraction = ? WHERE id = ?", state_name(end.state),
-                as_integer(end.aim_met), end.problem.dump(), now_ms(), end.state == JobState::kSucceeded ? 1.0 : 0.0, id);
+  const auto cpu_s = end.used ? std::optional(end.used->cpu_s) : std::nullopt;
+  const auto peak_rss_bytes = end.used ? std::optional(static_cast<std::int64_t>(end.used->peak_rss_bytes)) : std::nullopt;
+  database_.run(
+      "UPDATE job SET state = ?, aim_met = ?, problem = ?, finished_ms = ?, fraction = ?, cpu_s = ?, peak_rss_bytes = ? WHERE id = ?",
+      state_name(end.state), as_integer(end.aim_met), end.problem.dump(), now_ms(), end.state == JobState::kSucceeded ? 1.0 : 0.0, cpu_s,
+      peak_rss_bytes, id);
   if (database_.changes() == 0) return;  // it was removed
   std::map<std::string, StoredFile> artifacts;
   for (const StoredFile& file : end.artifacts) artifacts[file.name] = file;
@@ -333,6 +340,29 @@ std::map<std::string, std::int64_t> JobStore::counts_by_state() {
   Query row = database_.query("SELECT state, count(*) FROM job GROUP BY state");
   while (row.step()) counts[row.text(0)] = row.integer(1);
   return counts;
+}
+
+JobPrediction JobStore::predict(const std::string& owner, const std::string& kind, std::uint64_t scene_bytes) {
+  constexpr std::int64_t kLatest = 21;
+  std::vector<double> seconds, rss_bytes;
+  const std::scoped_lock lock(mutex_);
+  Query row = database_.query(
+      "SELECT finished_ms - started_ms, peak_rss_bytes, bytes FROM job JOIN job_file ON job_file.job = id AND purpose = 'input' AND role = "
+      "'scene' WHERE owner = ? AND kind = ? AND state = 'succeeded' AND peak_rss_bytes IS NOT NULL AND bytes > 0 ORDER BY number DESC "
+      "LIMIT ?",
+      owner, kind, kLatest);
+  while (row.step()) {
+    const double share = static_cast<double>(scene_bytes) / static_cast<double>(row.integer(2));
+    seconds.push_back(1e-3 * static_cast<double>(row.integer(0)) * share);
+    rss_bytes.push_back(static_cast<double>(row.integer(1)) * share);
+  }
+  if (seconds.empty()) return {};
+  const auto median = [](std::vector<double>& values) {
+    const auto middle = values.begin() + std::ssize(values) / 2;
+    std::ranges::nth_element(values, middle);
+    return *middle;
+  };
+  return {median(seconds), median(rss_bytes), static_cast<int>(seconds.size())};
 }
 
 std::vector<Job> JobStore::finished_before(std::int64_t moment_ms) {

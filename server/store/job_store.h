@@ -69,6 +69,8 @@ class JobStore {
   bool remove_upload(const std::string& owner, const std::string& id);
   /// SHA-256 of all that anything refers to.
   [[nodiscard]] std::vector<std::string> blobs_in_use();
+  /// By the owner's latest jobs of the kind: medians, in proportion to the bytes of their scenes.
+  [[nodiscard]] JobPrediction predict(const std::string& owner, const std::string& kind, std::uint64_t scene_bytes);
   /// Finished before that moment.
   [[nodiscard]] std::vector<Job> finished_before(std::int64_t moment_ms);
 

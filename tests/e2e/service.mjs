@@ -161,7 +161,10 @@ test("every field that is wrong is named by its pointer", async () => {
   assert.deepEqual(body.errors.map(({ pointer }) => pointer).sort(), ["/arguments/seconds", "/colour", "/scene", "/spec/budget_ms", "/spec/cache/folder", "/spec/camera/width", "/spec/foo", "/spec/view_space/kind", "/spec/view_space/leaf_m"].sort());
   const missing = await post(`${url}/v1/jobs`, { ...place, target: { name: "nobody.json" } });
   assert.deepEqual(missing.body.errors.map(({ pointer }) => pointer), ["/target"]);
-  assert.deepEqual((await post(`${url}/v1/jobs`, { ...place, dry_run: true })).body.valid, true);
+  const { body: dry } = await post(`${url}/v1/jobs`, { ...place, dry_run: true });
+  assert.equal(dry.valid, true);
+  assert.equal(dry.spec.budget_ms, spec.budget_ms);
+  assert.ok(dry.predicted.seconds > 0 && dry.predicted.peak_rss_bytes > 1e6, "by the job that was done above");
 });
 
 test("whatever else is wrong has its own word and status", async () => {

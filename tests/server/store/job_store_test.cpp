@@ -125,6 +125,20 @@ TEST_F(JobStoreTest, EventsTellEveryStateInOrder) {
   EXPECT_EQ(store_.artifacts_of(id).at(0).name, "metrics.json");
 }
 
+TEST_F(JobStoreTest, PredictsByWhatEarlierJobsTookInProportionToTheirScenes) {
+  EXPECT_EQ(store_.predict("anna", "place", 3).jobs, 0);
+  for (const std::uint64_t rss_bytes : {100, 300, 900}) {
+    const std::string id = store_.submit(job(), "").job.id;
+    (void)store_.start_next();
+    store_.finish(id, {.state = JobState::kSucceeded, .aim_met = true, .problem = {}, .artifacts = {}, .used = JobUse{1.0, rss_bytes}});
+  }
+  const JobPrediction predicted = store_.predict("anna", "place", 6);  // twice the scene's 3 bytes
+  EXPECT_EQ(predicted.jobs, 3);
+  EXPECT_EQ(predicted.peak_rss_bytes, 600.0);
+  EXPECT_EQ(store_.predict("anna", "survey", 6).jobs, 0);
+  EXPECT_EQ(store_.predict("bert", "place", 6).jobs, 0);
+}
+
 TEST_F(JobStoreTest, ARemovedJobTakesAllOfItsOwnAlong) {
   const std::string id = store_.submit(job(), "key").job.id;
   EXPECT_EQ(store_.blobs_in_use().size(), 1U);
