@@ -48,7 +48,7 @@ void find_problem_views(Surveyed& job, const JobSpec& spec, Placed& placed, Stag
     if (auto without = levels_in_vain(job, spec, placed.subdivision, budget)) {
       placed.subdivision = *std::move(without);
       leave_lods_out(kLevelsInVain, spec, job.world, clock);
-      job.searches = std::make_unique<SearchMemory>();  // what was searched had levels
+      job.searches = fresh_searches(job, spec);  // what was searched had levels
     }
   });
   placed.shows_levels = job.world.lods.used;

@@ -17,15 +17,15 @@
 namespace standin {
 
 enum class Violation {
-  kCellBox,          // a cell's box is not the view space's part inside its cube
-  kBoundBefore,      // bound_before_ms is not the recomputed bound
-  kBoundAfter,       // bound_after_ms is not the recomputed bound
-  kOverBudget,       // a CPV called solved is over budget
-  kNotSolved,        // a CPV within the budget is called unsolved
-  kNotDisjoint,      // two impostors of a CPV stand for the same object
-  kNotEnclosed,      // a CPV's cell is not inside its impostor's view cell
-  kMissingRegion,    // a leaf region over budget that no CPV lists
-  kLevels,           // an object's levels of detail are not those of the scene, lie farther off than stated, or are shown from too near
+  kCellBox,        // a cell's box is not the view space's part inside its cube
+  kBoundBefore,    // bound_before_ms is not the recomputed bound
+  kBoundAfter,     // bound_after_ms is not the recomputed bound
+  kOverBudget,     // a CPV called solved is over budget
+  kNotSolved,      // a CPV within the budget is called unsolved
+  kNotDisjoint,    // two impostors of a CPV stand for the same object
+  kNotEnclosed,    // a CPV's cell is not inside its impostor's view cell
+  kMissingRegion,  // a leaf region over budget that no CPV lists
+  kLevels,  // an object's levels of detail lie farther off than stated, are shown from too near, or from other bounds than the scene's
   kLayerInViewCell,  // an eye in an impostor's view cell may reach one of its layers: it has no bound
 };
 [[nodiscard]] const char* violation_name(Violation violation);
@@ -45,7 +45,7 @@ struct CheckInput {
   const ViewSpaceOptions& view_space_options;
   double budget_ms;
   std::uint32_t atlas_pages;  // a texture switch each, charged to every region that draws an impostor
-  LevelOptions levels = {};   // where the scene has levels of detail
+  LevelOptions levels = {};   // where the scene has levels of detail: those of the placement's file
 };
 
 struct CheckReport {

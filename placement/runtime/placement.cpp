@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "render/base/error.h"
+#include "render/scene/level_file.h"
 
 namespace standin {
 namespace {
@@ -71,7 +72,7 @@ std::vector<PlacementLevels> placement_levels(const Scene& scene) {
   for (std::uint32_t id = 0; id < scene.objects.size(); ++id) {
     const Object& object = scene.objects[id];
     if (object.levels.empty()) continue;
-    all.push_back({id, object.bounds, {}});
+    all.push_back({id, object.bounds, {}, level_transform(scene, object)});
     for (const ObjectLevel& level : object.levels) all.back().least_distance_m.push_back(level.least_distance_m);
   }
   return all;

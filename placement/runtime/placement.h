@@ -48,7 +48,8 @@ struct PlacementImpostor {
 struct PlacementLevels {
   std::uint32_t object = 0;
   Box bounds;
-  std::vector<double> least_distance_m;  // of levels 1, 2 ..., ascending
+  std::vector<double> least_distance_m;        // of levels 1, 2 ..., ascending
+  std::optional<Mat4> world_from_object = {};  // of their vertices; none: the scene file's node, whose vertices they are, says it
   [[nodiscard]] std::uint8_t level_from(const Box& cell) const;
 };
 

@@ -1,5 +1,8 @@
 // Values as bytes and back, for files that only we read: fixed sizes, little endian, lists with their length first.
 //
+// What is written and read in the same order is one function over `Bytes`, which calls pass() for each value of a struct: a writer's takes
+// it, a reader's sets it.
+//
 // A reader trusts nothing: it throws Failure(kFileBroken) where there are fewer bytes than a value or a list's length asks for.
 #pragma once
 
@@ -31,6 +34,14 @@ class ByteWriter {
     bytes_.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T));
   }
   void raw(std::string_view bytes) { bytes_.append(bytes); }
+  template <class T>
+  void pass(const T& one) {
+    value(one);
+  }
+  template <class T>
+  void pass(const std::vector<T>& values) {
+    list(values);
+  }
 
   [[nodiscard]] const std::string& bytes() const { return bytes_; }
 
@@ -64,6 +75,15 @@ class ByteReader {
     const std::string_view taken = rest_.substr(0, size);
     rest_.remove_prefix(size);
     return taken;
+  }
+  template <class T>
+  void pass(T& one) {
+    one = value<T>();
+  }
+  void pass(bool& one) { one = value<std::uint8_t>() != 0; }
+  template <class T>
+  void pass(std::vector<T>& values) {
+    values = list<T>();
   }
   [[nodiscard]] std::size_t size_left() const { return rest_.size(); }
   void require_end() const {

@@ -4,9 +4,13 @@
 #include <string>
 #include <string_view>
 
+#include "render/base/fingerprint.h"
+
 namespace standin {
 
 /// Lower-case hex. Throws Failure(kInternal) where OpenSSL offers no SHA-256.
-[[nodiscard]] std::string sha256_hex(std::string_view bytes);
+[[nodiscard]] inline std::string sha256_hex(std::string_view bytes) {
+  return fingerprint_of(bytes).hex();
+}
 
 }  // namespace standin

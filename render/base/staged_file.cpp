@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <charconv>
+#include <cstring>
 #include <fstream>
 #include <iterator>
 
@@ -46,20 +47,27 @@ std::string read_file(const fs::path& file) {
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
+// Errors of a stream hide theirs in errno.
+std::string why_not_written(const fs::path& staged, const fs::path& file, std::span<const std::string_view> pieces) {
+  errno = 0;
+  std::ofstream stream(staged, std::ios::binary | std::ios::trunc);
+  for (const auto piece : pieces) stream.write(piece.data(), static_cast<std::streamsize>(piece.size()));
+  stream.close();
+  const int why = errno;
+  std::error_code error;
+  if (stream) fs::rename(staged, file, error);
+  if (stream && !error) return "";
+  std::error_code ignored;
+  fs::remove(staged, ignored);
+  return error ? error.message() : why != 0 ? std::strerror(why) : "no reason is known";
+}
+
 void write_file(const fs::path& file, std::span<const std::string_view> pieces) {
   if (!fs::is_directory(folder_of(file)))
     throw Failure(ErrorWord::kFileMissing, "cannot write " + file.string() + ": there is no folder " + folder_of(file).string());
   sweep_abandoned(file);
-  const fs::path staged = staged_path(file);
-  std::ofstream stream(staged, std::ios::binary | std::ios::trunc);
-  for (const auto piece : pieces) stream.write(piece.data(), static_cast<std::streamsize>(piece.size()));
-  stream.close();
-  std::error_code error;
-  if (stream) fs::rename(staged, file, error);
-  if (stream && !error) return;
-  const std::string why = error ? ": " + error.message() : "";
-  fs::remove(staged, error);
-  throw Failure(ErrorWord::kInternal, "cannot write " + file.string() + why);
+  if (const std::string why = why_not_written(staged_path(file), file, pieces); !why.empty())
+    throw Failure(ErrorWord::kInternal, "cannot write " + file.string() + ": " + why);
 }
 
 void write_file(const fs::path& file, std::string_view bytes) {

@@ -19,6 +19,10 @@ namespace standin {
 void write_file(const std::filesystem::path& file, std::span<const std::string_view> pieces);
 void write_file(const std::filesystem::path& file, std::string_view bytes);
 
+/// Writes the pieces to `staged` and renames it to `file`; says why not, and leaves nothing behind, where that cannot be. "": done.
+[[nodiscard]] std::string why_not_written(const std::filesystem::path& staged, const std::filesystem::path& file,
+                                          std::span<const std::string_view> pieces);
+
 /// `path` + `suffix` + this process' id, e.g. "out.partial-4711".
 [[nodiscard]] std::filesystem::path staged_path(const std::filesystem::path& path, std::string_view suffix = ".partial-");
 /// Files or folders that processes which no longer run staged for `path`, sorted.

@@ -5,37 +5,30 @@
 
 #include <algorithm>
 #include <map>
-#include <nlohmann/json.hpp>
-#include <string_view>
 
 #include "render/image/image_io.h"
 #include "render/impostor/atlas.h"
+#include "render/scene/glb_container.h"
 
 namespace standin {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using Json = OrderedJson;
 
 // Names of glTF 2.0.
-constexpr int kFloat = 5126, kUnsignedShort = 5123, kUnsignedInt = 5125, kArrayBuffer = 34962, kElementArrayBuffer = 34963;
 constexpr int kNearest = 9728, kClampToEdge = 33071;
 enum BufferView : int { kPositions, kUvs, kIndices, kFirstImage };
 
 constexpr std::uint64_t kBytesPerVertex = 3 * sizeof(float) + 2 * sizeof(float);
-constexpr std::uint64_t kMostShortVertices = 0xFFFF;  // index 65535 itself is kept free: it restarts primitives
 
 /// One width for all of an impostor's primitives.
 std::uint64_t bytes_per_index(std::uint64_t vertices) {
-  return vertices <= kMostShortVertices ? 2 : 4;
+  return vertices <= gltf::kHighestShort + 1U ? 2 : 4;
 }
 
 template <class Value>
 void append(std::string& bytes, const Value& value) {
   bytes.append(reinterpret_cast<const char*>(&value), sizeof(Value));  // glTF is little-endian, as every target of ours is
-}
-
-void pad(std::string& bytes, char filler) {
-  while (bytes.size() % 4 != 0) bytes.push_back(filler);
 }
 
 /// The binary chunk's sections and the JSON arrays that refer to them, in the making.
@@ -87,10 +80,11 @@ Json add_primitive(const TexturedMesh& mesh, const std::vector<AtlasSlot>& slots
     vertices += chart.vertex_count;
     indices += chart.index_count;
   }
-  pad(document.indices, '\0');
-  const int positions = add_accessor(document, kPositions, first_position, kFloat, vertices, "VEC3");
-  const int uvs = add_accessor(document, kUvs, first_uv, kFloat, vertices, "VEC2");
-  const int triangles = add_accessor(document, kIndices, first_index, index_bytes == 2 ? kUnsignedShort : kUnsignedInt, indices, "SCALAR");
+  pad_binary(document.indices);
+  const int positions = add_accessor(document, kPositions, first_position, gltf::kFloat, vertices, "VEC3");
+  const int uvs = add_accessor(document, kUvs, first_uv, gltf::kFloat, vertices, "VEC2");
+  const int triangles =
+      add_accessor(document, kIndices, first_index, index_bytes == 2 ? gltf::kUnsignedShort : gltf::kUnsignedInt, indices, "SCALAR");
   document.accessors[static_cast<std::size_t>(positions)]["min"] = {bounds.min.x, bounds.min.y, bounds.min.z};
   document.accessors[static_cast<std::size_t>(positions)]["max"] = {bounds.max.x, bounds.max.y, bounds.max.z};
   return {{"attributes", {{"POSITION", positions}, {"TEXCOORD_0", uvs}}}, {"indices", triangles}, {"material", slots[charts.front()].page}};
@@ -123,49 +117,23 @@ Json material_of(std::size_t page) {
           {"extensions", {{"KHR_materials_unlit", Json::object()}}}};
 }
 
-/// Appends a section to the binary chunk and describes it.
-void add_view(Json& views, std::string& binary, std::string_view bytes, int stride, int target) {
-  pad(binary, '\0');
-  Json view = {{"buffer", 0}, {"byteOffset", binary.size()}, {"byteLength", bytes.size()}};
-  if (stride != 0) view["byteStride"] = stride;
-  if (target != 0) view["target"] = target;
-  views.push_back(std::move(view));
-  binary.append(bytes);
-}
-
 /// The sections that depend on there being anything to show: glTF forbids empty arrays.
-void add_contents(const ImpostorSet& set, Document& document, Json& gltf, std::string& binary) {
+void add_contents(const ImpostorSet& set, Document& document, Json& root, std::string& binary) {
   Json views = Json::array();
-  add_view(views, binary, document.positions, 3 * sizeof(float), kArrayBuffer);
-  add_view(views, binary, document.uvs, 2 * sizeof(float), kArrayBuffer);
-  add_view(views, binary, document.indices, 0, kElementArrayBuffer);
+  add_buffer_view(views, binary, document.positions, 3 * sizeof(float), gltf::kArrayBuffer);
+  add_buffer_view(views, binary, document.uvs, 2 * sizeof(float), gltf::kArrayBuffer);
+  add_buffer_view(views, binary, document.indices, 0, gltf::kElementArrayBuffer);
   for (std::size_t page = 0; page < set.pages.size(); ++page) {
-    add_view(views, binary, encode_png(set.pages[page]), 0, 0);
-    gltf["images"].push_back({{"name", set.pages[page].name}, {"mimeType", "image/png"}, {"bufferView", kFirstImage + page}});
-    gltf["textures"].push_back({{"sampler", 0}, {"source", page}});
-    gltf["materials"].push_back(material_of(page));
+    add_buffer_view(views, binary, encode_png(set.pages[page]), 0, 0);
+    root["images"].push_back({{"name", set.pages[page].name}, {"mimeType", "image/png"}, {"bufferView", kFirstImage + page}});
+    root["textures"].push_back({{"sampler", 0}, {"source", page}});
+    root["materials"].push_back(material_of(page));
   }
-  pad(binary, '\0');
-  gltf["extensionsUsed"] = {"KHR_materials_unlit"};
-  gltf["samplers"] = Json::array({{{"magFilter", kNearest}, {"minFilter", kNearest}, {"wrapS", kClampToEdge}, {"wrapT", kClampToEdge}}});
-  gltf["meshes"] = std::move(document.meshes);
-  gltf["accessors"] = std::move(document.accessors);
-  gltf["bufferViews"] = std::move(views);
-  gltf["buffers"] = Json::array({{{"byteLength", binary.size()}}});
-}
-
-std::string glb_of(std::string json, const std::string& binary) {
-  pad(json, ' ');
-  const auto size = [](const std::string& chunk) { return static_cast<std::uint32_t>(chunk.size()); };
-  std::string glb = "glTF";
-  append(glb, std::uint32_t{2});
-  append(glb, 12 + 8 + size(json) + (binary.empty() ? 0 : 8 + size(binary)));
-  append(glb, size(json));
-  glb += "JSON" + json;
-  if (binary.empty()) return glb;
-  append(glb, size(binary));
-  glb.append("BIN\0", 4);
-  return glb + binary;
+  root["extensionsUsed"] = {"KHR_materials_unlit"};
+  root["samplers"] = Json::array({{{"magFilter", kNearest}, {"minFilter", kNearest}, {"wrapS", kClampToEdge}, {"wrapT", kClampToEdge}}});
+  root["meshes"] = std::move(document.meshes);
+  root["accessors"] = std::move(document.accessors);
+  root["bufferViews"] = std::move(views);
 }
 
 }  // namespace
@@ -173,13 +141,13 @@ std::string glb_of(std::string json, const std::string& binary) {
 std::string encode_impostor_glb(const ImpostorSet& set) {
   Document document;
   for (std::size_t id = 0; id < set.impostors.size(); ++id) add_node(set, id, document);
-  Json gltf = {{"asset", {{"version", "2.0"}, {"generator", "Standin"}}}, {"scene", 0}};
-  gltf["scenes"] = Json::array({Json::object()});
-  for (std::size_t id = 0; id < set.impostors.size(); ++id) gltf["scenes"][0]["nodes"].push_back(id);
-  if (!document.nodes.empty()) gltf["nodes"] = document.nodes;
+  Json root = {{"asset", {{"version", "2.0"}, {"generator", "Standin"}}}, {"scene", 0}};
+  root["scenes"] = Json::array({Json::object()});
+  for (std::size_t id = 0; id < set.impostors.size(); ++id) root["scenes"][0]["nodes"].push_back(id);
+  if (!document.nodes.empty()) root["nodes"] = document.nodes;
   std::string binary;
-  if (!document.positions.empty()) add_contents(set, document, gltf, binary);
-  return glb_of(gltf.dump(), binary);
+  if (!document.positions.empty()) add_contents(set, document, root, binary);
+  return GlbContainer(std::move(root), binary).joined();
 }
 
 std::uint64_t geometry_bytes(const Impostor& impostor) {

@@ -1,13 +1,12 @@
 #include "render/scene/level_errors.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
-#include <tuple>
 
 #include "render/base/parallel.h"
+#include "render/scene/textured_surface.h"
 
 namespace standin {
 namespace {
@@ -36,40 +35,18 @@ std::string metres(double value) {
   return std::to_string(value) + " m";
 }
 
-using Corner = std::array<double, 5>;
-using Corners = std::array<Corner, 3>;
-
-Corners corners_of(const Surface& surface, std::size_t t) {
-  Corners corners;
-  for (std::size_t c = 0; c < 3; ++c) {
-    const SurfacePoint& p = surface.points[surface.triangles[t][c]];
-    corners[c] = {p.place.x, p.place.y, p.place.z, p.texture.x, p.texture.y};
-  }
-  std::ranges::sort(corners);
-  return corners;
-}
-
-/// A surface's triangles, but for those that another one has, too: these need no look.
-Surface without_shared(const Surface& surface, const Surface& other) {
-  std::vector<Corners> known;
-  for (std::size_t t = 0; t < other.triangles.size(); ++t) known.push_back(corners_of(other, t));
-  std::ranges::sort(known);
-  Surface own{surface.points, {}};
-  for (std::size_t t = 0; t < surface.triangles.size(); ++t)
-    if (!std::ranges::binary_search(known, corners_of(surface, t))) own.triangles.push_back(surface.triangles[t]);
-  return own;
-}
-
 class LevelJudge {
  public:
-  LevelJudge(const Scene& scene, const LevelOptions& options) : scene_(scene), options_(options) {}
+  LevelJudge(const Scene& scene, const LevelOptions& options, const WorkBudget& budget)
+      : scene_(scene), options_(options), budget_(budget), textured_(worn_with_texture(scene)) {}
 
-  std::vector<LevelFault> run(const WorkBudget& budget) {
+  std::vector<LevelFault> run() {
     for (std::uint32_t id = 0; id < scene_.objects.size(); ++id)
       for (std::size_t k = 0; k < scene_.objects[id].levels.size(); ++k) hear(id, k);
     const std::vector<std::pair<Pair, Claim>> claims(claims_.begin(), claims_.end());
     std::vector<double> bounds_m(claims.size());
-    parallel_for(claims.size(), options_.threads, budget, [&](std::size_t i) { bounds_m[i] = bound_m(claims[i].first, claims[i].second); });
+    parallel_for(claims.size(), options_.threads, budget_,
+                 [&](std::size_t i) { bounds_m[i] = bound_m(claims[i].first, claims[i].second); });
     for (std::size_t i = 0; i < claims.size(); ++i)
       if (const auto& [pair, claim] = claims[i]; !(bounds_m[i] <= claim.error_m))
         report(claim.object, claim.level,
@@ -122,27 +99,23 @@ class LevelJudge {
     if (stated.error_m < strictest.error_m) strictest = stated;
   }
 
-  [[nodiscard]] std::pair<Surface, Surface> surfaces(const Pair& pair) const {
-    if (pair.by_place_alone)
-      return {surface_of_parts(scene_, pair.original, pair.original_count), surface_of_parts(scene_, pair.simple, pair.simple_count)};
-    const double scale = metres_per_uv(scene_.meshes[pair.original]);
-    return {surface_of(scene_.meshes[pair.original], scale), surface_of(scene_.meshes[pair.simple], scale)};
-  }
-
   [[nodiscard]] double bound_m(const Pair& pair, const Claim& claim) const {
-    const auto [original, simple] = surfaces(pair);
     DeviationLimits limits;
     limits.relative = 0.0;
     limits.absolute_m = claim.error_m;
     limits.refuted_m = claim.error_m;
-    limits.pieces = static_cast<std::uint64_t>(kMostPieces * static_cast<double>(original.triangles.size() + simple.triangles.size()));
-    const double there_m = deviation(without_shared(original, simple), SurfaceTree(simple), limits).bound_m;
-    if (there_m > claim.error_m) return there_m;
-    return std::max(there_m, deviation(without_shared(simple, original), SurfaceTree(original), limits).bound_m);
+    limits.budget = &budget_;
+    if (!pair.by_place_alone)
+      return TexturedSurface(scene_.meshes[pair.original], textured_[pair.original])
+          .deviation_of(scene_.meshes[pair.simple], limits, kMostPieces)
+          .bound_m;
+    return deviation_by_place(scene_, {pair.original, pair.original_count}, {pair.simple, pair.simple_count}, limits, kMostPieces).bound_m;
   }
 
   const Scene& scene_;
   const LevelOptions& options_;
+  const WorkBudget& budget_;
+  std::vector<bool> textured_;  // per mesh
   std::map<Pair, Claim> claims_;
   std::vector<LevelFault> faults_;
 };
@@ -163,10 +136,10 @@ double coverage_distance_m(const Object& object, double screen_coverage, const L
   return 0.5 * object.bounds.diagonal() * options.whole_image_distance / std::sqrt(std::max(screen_coverage, 1e-12));
 }
 
-Surface surface_of_parts(const Scene& scene, std::uint32_t first_part, std::uint32_t part_count) {
+Surface surface_of_parts(const Scene& scene, PartRange parts) {
   Surface all;
-  for (std::uint32_t p = 0; p < part_count; ++p) {
-    const Surface one = surface_of(scene.meshes[scene.parts[first_part + p].mesh], 0.0);
+  for (std::uint32_t p = 0; p < parts.count; ++p) {
+    const Surface one = surface_of(scene.meshes[scene.parts[parts.first + p].mesh], 0.0);
     const auto first = static_cast<std::uint32_t>(all.points.size());
     all.points.insert(all.points.end(), one.points.begin(), one.points.end());
     for (const auto& [a, b, c] : one.triangles) all.triangles.push_back({first + a, first + b, first + c});
@@ -174,8 +147,14 @@ Surface surface_of_parts(const Scene& scene, std::uint32_t first_part, std::uint
   return all;
 }
 
+Deviation deviation_by_place(const Scene& scene, PartRange a, PartRange b, DeviationLimits limits, double pieces_per_triangle) {
+  const ComparedSurface one(surface_of_parts(scene, a)), other(surface_of_parts(scene, b));
+  limits.pieces = static_cast<std::uint64_t>(pieces_per_triangle * static_cast<double>(one.triangle_count() + other.triangle_count()));
+  return one.deviation_both_ways(other, limits);
+}
+
 std::vector<LevelFault> level_faults(const Scene& scene, const LevelOptions& options, const WorkBudget& budget) {
-  return LevelJudge(scene, options).run(budget);
+  return LevelJudge(scene, options, budget).run();
 }
 
 }  // namespace standin

@@ -16,8 +16,17 @@ namespace standin {
 [[nodiscard]] double greatest_stretch(const Mat4& transform);
 /// Distance from which an author's level is shown, by the share of the image that the object's sphere covers there.
 [[nodiscard]] double coverage_distance_m(const Object& object, double screen_coverage, const LevelOptions& options);
-/// Of a range of parts, as one surface by place alone: texture coordinates of other meshes mean something else.
-[[nodiscard]] Surface surface_of_parts(const Scene& scene, std::uint32_t first_part, std::uint32_t part_count);
+
+struct PartRange {
+  std::uint32_t first = 0;
+  std::uint32_t count = 0;
+  friend auto operator<=>(const PartRange&, const PartRange&) = default;
+};
+/// As one surface by place alone: texture coordinates of other meshes mean something else.
+[[nodiscard]] Surface surface_of_parts(const Scene& scene, PartRange parts);
+/// The greater of both ways' deviations; `pieces_per_triangle` of both ranges is the most, each way.
+[[nodiscard]] Deviation deviation_by_place(const Scene& scene, PartRange a, PartRange b, DeviationLimits limits,
+                                           double pieces_per_triangle);
 
 struct LevelFault {
   std::uint32_t object = 0;

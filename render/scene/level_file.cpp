@@ -1,8 +1,7 @@
 #include "render/scene/level_file.h"
 
 #include <algorithm>
-#include <array>
-#include <nlohmann/json.hpp>
+#include <cmath>
 
 #include "render/base/error.h"
 #include "render/scene/glb_container.h"
@@ -13,23 +12,25 @@
 namespace standin {
 namespace {
 
-using OrderedJson = nlohmann::ordered_json;
 using Range = std::pair<std::uint32_t, std::uint32_t>;
-
-// Names of glTF 2.0.
-constexpr int kFloat = 5126, kUnsignedShort = 5123, kUnsignedInt = 5125, kArrayBuffer = 34962, kElementArrayBuffer = 34963;
-constexpr std::uint32_t kHighestShort = 0xFFFE;  // index 65535 itself is kept free: it restarts primitives
 
 std::uint32_t source_of(const Mesh& mesh, std::uint32_t vertex) {
   return mesh.source.empty() ? vertex : mesh.source[vertex];
 }
 
-/// Corners of a simplified mesh as vertices of the file's primitive.
-std::vector<std::uint32_t> file_corners(const Scene& scene, const Mesh& simple) {
-  const Mesh& original = scene.meshes[static_cast<std::size_t>(simple.simplified_from)];
+/// Corners of a mesh of the scene, simplified or not, as vertices of the file's primitive.
+std::vector<std::uint32_t> file_corners(const Scene& scene, const Mesh& mesh) {
   std::vector<std::uint32_t> corners;
-  for (const std::uint32_t v : simple.indices) corners.push_back(source_of(original, source_of(simple, v)));
+  for (const std::uint32_t v : mesh.indices) {
+    const std::uint32_t source = source_of(mesh, v);
+    corners.push_back(mesh.simplified_from < 0 ? source : source_of(scene.meshes[static_cast<std::size_t>(mesh.simplified_from)], source));
+  }
   return corners;
+}
+
+/// Whether the file's primitive is this mesh, triangle by triangle, so that nothing need be said of it.
+bool is_whole(const Mesh& mesh) {
+  return mesh.simplified_from < 0 && !mesh.is_piece;
 }
 
 class LevelWriter {
@@ -41,17 +42,14 @@ class LevelWriter {
     std::vector<Range> ranges(numbers.size());
     for (const auto& [range, number] : numbers) ranges[number] = range;
     for (const Range& range : ranges) add_node(range);
-    const OrderedJson json = assembled();
-    const GlbContainer container(json.dump(-1, ' ', false, OrderedJson::error_handler_t::replace), binary_);
-    LevelFile file{"", binary_.size()};
-    for (const std::string_view piece : container.pieces()) file.glb += piece;
-    return file;
+    const GlbContainer container(assembled(), binary_);
+    return {container.joined(), binary_.size()};
   }
 
  private:
   /// Accessors of one kind lie one after the other in a buffer view.
   struct Section {
-    int stride = 0;
+    std::size_t stride = 0;
     int target = 0;
     std::string bytes = {};
     std::vector<std::size_t> accessors = {};
@@ -67,7 +65,7 @@ class LevelWriter {
 
   OrderedJson reference(const Part& part) {
     const Mesh& mesh = scene_.meshes[part.mesh];
-    const bool whole = mesh.simplified_from < 0;
+    const bool whole = is_whole(mesh);
     OrderedJson primitive{{"attributes", {{"POSITION", whole ? one_triangle() : all_vertices()}}}};
     if (!whole) primitive["indices"] = corners_of(part.mesh, file_corners(scene_, mesh));
     primitive["extras"] = {{"scene_mesh", part.gltf_mesh}, {"scene_primitive", part.gltf_primitive}};
@@ -82,13 +80,13 @@ class LevelWriter {
   }
 
   OrderedJson attributes_of(const Mesh& mesh) {
-    OrderedJson attributes{{"POSITION", add_accessor(vec3s_, mesh.positions, kFloat, "VEC3")}};
+    OrderedJson attributes{{"POSITION", add_accessor(vec3s_, mesh.positions, gltf::kFloat, "VEC3")}};
     Box bounds;
     for (const glm::vec3& position : mesh.positions) bounds.extend(Vec3(position));
     accessors_.back()["min"] = {bounds.min.x, bounds.min.y, bounds.min.z};
     accessors_.back()["max"] = {bounds.max.x, bounds.max.y, bounds.max.z};
-    attributes["NORMAL"] = add_accessor(vec3s_, mesh.normals, kFloat, "VEC3");
-    if (!mesh.uvs.empty()) attributes["TEXCOORD_0"] = add_accessor(vec2s_, mesh.uvs, kFloat, "VEC2");
+    attributes["NORMAL"] = add_accessor(vec3s_, mesh.normals, gltf::kFloat, "VEC3");
+    if (!mesh.uvs.empty()) attributes["TEXCOORD_0"] = add_accessor(vec2s_, mesh.uvs, gltf::kFloat, "VEC2");
     return attributes;
   }
 
@@ -98,8 +96,8 @@ class LevelWriter {
     const std::uint32_t highest = *std::ranges::max_element(corners);
     highest_ = std::max(highest_, highest);
     const std::vector<std::uint16_t> narrow(corners.begin(), corners.end());
-    return known->second = highest <= kHighestShort ? add_accessor(shorts_, narrow, kUnsignedShort, "SCALAR")
-                                                    : add_accessor(ints_, corners, kUnsignedInt, "SCALAR");
+    return known->second = highest <= gltf::kHighestShort ? add_accessor(shorts_, narrow, gltf::kUnsignedShort, "SCALAR")
+                                                          : add_accessor(ints_, corners, gltf::kUnsignedInt, "SCALAR");
   }
 
   template <class Value>
@@ -107,7 +105,7 @@ class LevelWriter {
     section.accessors.push_back(accessors_.size());
     accessors_.push_back(
         {{"bufferView", 0}, {"byteOffset", section.bytes.size()}, {"componentType", component}, {"count", values.size()}, {"type", type}});
-    section.bytes.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(Value));
+    section.bytes += bytes_of_values(values);
     return accessors_.size() - 1;
   }
 
@@ -121,7 +119,7 @@ class LevelWriter {
     return static_cast<std::size_t>(one_triangle_);
   }
   std::size_t add_zeros(std::size_t count) {
-    accessors_.push_back({{"componentType", kFloat}, {"count", count}, {"type", "VEC3"}, {"min", {0, 0, 0}}, {"max", {0, 0, 0}}});
+    accessors_.push_back({{"componentType", gltf::kFloat}, {"count", count}, {"type", "VEC3"}, {"min", {0, 0, 0}}, {"max", {0, 0, 0}}});
     return accessors_.size() - 1;
   }
 
@@ -143,41 +141,31 @@ class LevelWriter {
 
   void close(Section& section, OrderedJson& views) {
     if (section.accessors.empty()) return;
-    binary_.resize((binary_.size() + 3) / 4 * 4, '\0');
-    for (const std::size_t accessor : section.accessors) accessors_[accessor]["bufferView"] = views.size();
-    OrderedJson view{{"buffer", 0}, {"byteOffset", binary_.size()}, {"byteLength", section.bytes.size()}};
-    if (section.stride > 0) view["byteStride"] = section.stride;
-    view["target"] = section.target;
-    views.push_back(std::move(view));
-    binary_ += section.bytes;
+    const std::size_t view = add_buffer_view(views, binary_, section.bytes, section.stride, section.target);
+    for (const std::size_t accessor : section.accessors) accessors_[accessor]["bufferView"] = view;
   }
 
   OrderedJson assembled() {
     if (all_vertices_ >= 0) accessors_[static_cast<std::size_t>(all_vertices_)]["count"] = std::uint64_t{highest_} + 1;
     OrderedJson views = OrderedJson::array();
     for (Section* section : {&vec3s_, &vec2s_, &ints_, &shorts_}) close(*section, views);
-    binary_.resize((binary_.size() + 3) / 4 * 4, '\0');
     OrderedJson roots = OrderedJson::array();
     for (std::size_t i = 0; i < nodes_.size(); ++i) roots.push_back(i);
     OrderedJson json{{"asset", {{"version", "2.0"}, {"generator", "standin"}}}, {"scene", 0}};
     json["scenes"] = OrderedJson::array({{{"nodes", roots}}});
-    const auto add = [&](const char* key, const OrderedJson& list) {
-      if (!list.empty()) json[key] = list;  // glTF forbids empty lists
-    };
-    add("nodes", nodes_);
-    add("meshes", meshes_);
-    add("materials", materials_);
-    add("accessors", accessors_);
-    add("bufferViews", views);
-    if (!binary_.empty()) json["buffers"] = OrderedJson::array({{{"byteLength", binary_.size()}}});
+    add_unless_empty(json, "nodes", nodes_);
+    add_unless_empty(json, "meshes", meshes_);
+    add_unless_empty(json, "materials", materials_);
+    add_unless_empty(json, "accessors", accessors_);
+    add_unless_empty(json, "bufferViews", views);
     return json;
   }
 
   const Scene& scene_;
   OrderedJson nodes_ = OrderedJson::array(), meshes_ = OrderedJson::array(), materials_ = OrderedJson::array(),
               accessors_ = OrderedJson::array();
-  Section vec3s_{sizeof(glm::vec3), kArrayBuffer}, vec2s_{sizeof(glm::vec2), kArrayBuffer}, ints_{0, kElementArrayBuffer},
-      shorts_{0, kElementArrayBuffer};
+  Section vec3s_{sizeof(glm::vec3), gltf::kArrayBuffer}, vec2s_{sizeof(glm::vec2), gltf::kArrayBuffer}, ints_{0, gltf::kElementArrayBuffer},
+      shorts_{0, gltf::kElementArrayBuffer};
   std::string binary_;
   std::map<std::uint32_t, std::size_t> corners_;           // accessor, by mesh of the scene
   std::map<std::uint32_t, OrderedJson> attributes_;        // by mesh of the scene
@@ -194,11 +182,20 @@ std::span<const std::uint8_t> bytes_of(const std::string& text) {
   return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
 }
 
+template <class Vector>
+void require_finite(const std::vector<Vector>& values, std::uint64_t accessor) {
+  for (std::size_t i = 0; i < values.size(); ++i)
+    for (int axis = 0; axis < Vector::length(); ++axis)
+      if (!std::isfinite(values[i][axis]))
+        broken("accessors[" + std::to_string(accessor) + "]: element " + std::to_string(i) + " is no finite number");
+}
+
 /// Where a part of a level lies in the file, and which mesh of the scene it stands for.
 struct Form {
   std::uint32_t mesh = 0;
   std::uint64_t indices = 0;  // accessor
   const Json* primitive = nullptr;
+  bool own_vertices = false;  // of the file; else the scene's
   std::uint64_t triangles = 0;
 };
 
@@ -209,13 +206,14 @@ class LevelReader {
     for (std::size_t n = 0; n < file_.count("nodes"); ++n) nodes_.emplace(text(file_.item("nodes", n, "nodes"), "name"), n);
   }
 
-  void run() {
+  std::uint64_t run() {
     for (const StatedLevel& level : stated_)
       if (level.object >= scene_.objects.size()) broken("object " + std::to_string(level.object) + " is not in the scene");
     add_meshes();
     std::vector<std::vector<ObjectLevel>> levels(scene_.objects.size());
     for (const StatedLevel& level : stated_) levels[level.object].push_back(level_of(level));
     for (std::size_t id = 0; id < levels.size(); ++id) scene_.objects[id].levels = std::move(levels[id]);
+    return file_.count("buffers") == 0 ? 0 : required_number(file_.item("buffers", 0, "buffers"), "byteLength", "buffers[0]");
   }
 
  private:
@@ -258,8 +256,9 @@ class LevelReader {
     const Json& primitives = primitives_of(level);
     std::vector<Form> forms;
     for (std::uint32_t p = 0; p < own.part_count; ++p) {
+      const Part& part = scene_.parts[own.first_part + p];
       const auto indices = whole_number(primitives[p], "indices", level.gltf_node);
-      if (indices) forms.push_back({scene_.parts[own.first_part + p].mesh, *indices, &primitives[p]});
+      if (indices) forms.push_back({part.mesh, *indices, &primitives[p], part.gltf_mesh < 0});
     }
     return forms;
   }
@@ -277,6 +276,7 @@ class LevelReader {
     std::ranges::stable_sort(ordered,
                              [](const Form& a, const Form& b) { return a.mesh != b.mesh ? a.mesh < b.mesh : a.triangles > b.triangles; });
     for (const Form& form : ordered) {
+      if (is_itself(form)) continue;
       Mesh mesh = mesh_of(form);
       mesh.simplified_from = static_cast<std::int32_t>(form.mesh);
       meshes_[{form.mesh, static_cast<std::uint32_t>(form.indices)}] = static_cast<std::uint32_t>(scene_.meshes.size());
@@ -284,11 +284,19 @@ class LevelReader {
     }
   }
 
+  /// A piece of a split object, named by its corners.
+  bool is_itself(const Form& form) {
+    const Mesh& own = scene_.meshes[form.mesh];
+    if (!own.is_piece || form.own_vertices || file_.indices(form.indices) != file_corners(scene_, own)) return false;
+    meshes_[{form.mesh, static_cast<std::uint32_t>(form.indices)}] = form.mesh;
+    return true;
+  }
+
   Mesh mesh_of(const Form& form) {
     const std::string place = "accessors[" + std::to_string(form.indices) + "]";
     const std::vector<std::uint32_t> corners = file_.indices(form.indices);
     if (corners.empty() || corners.size() % 3 != 0) broken(place + " is no list of triangles");
-    if (member(*form.primitive, "material") != nullptr) return mesh_of_own_vertices(form, corners, place);
+    if (form.own_vertices) return mesh_of_own_vertices(form, corners, place);
     return mesh_over_file(scene_.meshes[form.mesh], corners, place);
   }
 
@@ -310,12 +318,17 @@ class LevelReader {
 
   Mesh mesh_of_own_vertices(const Form& form, const std::vector<std::uint32_t>& corners, const std::string& place) {
     const Json* attributes = member(*form.primitive, "attributes");
-    const auto accessor = [&](const char* name) { return attributes == nullptr ? std::nullopt : whole_number(*attributes, name, place); };
+    const auto read = [&](const char* name, auto& values) {
+      const auto accessor = attributes == nullptr ? std::nullopt : whole_number(*attributes, name, place);
+      if (!accessor) return;
+      values = file_.vectors<typename std::remove_reference_t<decltype(values)>::value_type>(*accessor);
+      require_finite(values, *accessor);
+    };
     Mesh mesh;
     mesh.name = scene_.meshes[form.mesh].name;
-    if (const auto positions = accessor("POSITION")) mesh.positions = file_.vectors<glm::vec3>(*positions);
-    if (const auto normals = accessor("NORMAL")) mesh.normals = file_.vectors<glm::vec3>(*normals);
-    if (const auto uvs = accessor("TEXCOORD_0")) mesh.uvs = file_.vectors<glm::vec2>(*uvs);
+    read("POSITION", mesh.positions);
+    read("NORMAL", mesh.normals);
+    read("TEXCOORD_0", mesh.uvs);
     mesh.indices = corners;
     const bool in_range = *std::ranges::max_element(corners) < mesh.positions.size();
     const bool complete = mesh.normals.size() == mesh.positions.size() && (mesh.uvs.empty() || mesh.uvs.size() == mesh.positions.size());
@@ -378,11 +391,16 @@ LevelFile write_levels(const Scene& scene) {
 double level_bytes(const Scene& scene, const Part& part) {
   const Mesh& mesh = scene.meshes[part.mesh];
   const bool refers = part.gltf_mesh >= 0;
-  if (refers && mesh.simplified_from < 0) return 0.0;
-  const Mesh& vertices = refers ? scene.meshes[static_cast<std::size_t>(mesh.simplified_from)] : mesh;
-  const double index_bytes = vertices.positions.size() <= kHighestShort ? 2.0 : 4.0;
+  if (refers && is_whole(mesh)) return 0.0;
+  const Mesh& vertices = refers && mesh.simplified_from >= 0 ? scene.meshes[static_cast<std::size_t>(mesh.simplified_from)] : mesh;
+  const double index_bytes = vertices.positions.size() <= gltf::kHighestShort ? 2.0 : 4.0;
   const double vertex_bytes = refers ? 0.0 : 2.0 * sizeof(glm::vec3) + (mesh.uvs.empty() ? 0.0 : sizeof(glm::vec2));
   return index_bytes * static_cast<double>(mesh.indices.size()) + vertex_bytes * static_cast<double>(mesh.positions.size());
+}
+
+std::optional<Mat4> level_transform(const Scene& scene, const Object& object) {
+  if (object.part_count > 0 && scene.parts[object.first_part].gltf_mesh >= 0) return std::nullopt;
+  return object.world_from_object;
 }
 
 std::vector<StatedLevel> stated_levels(const Scene& scene) {
@@ -395,8 +413,8 @@ std::vector<StatedLevel> stated_levels(const Scene& scene) {
   return stated;
 }
 
-void read_levels(std::span<const StatedLevel> stated, const std::string& glb, Scene& scene) {
-  LevelReader(stated, glb, scene).run();
+std::uint64_t read_levels(std::span<const StatedLevel> stated, const std::string& glb, Scene& scene) {
+  return LevelReader(stated, glb, scene).run();
 }
 
 }  // namespace standin

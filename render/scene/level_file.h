@@ -3,7 +3,8 @@
 // A simplified mesh uses vertices of the original alone, so of a glTF scene the file holds lists of corners and nothing else: vertices,
 // textures and materials are those of the scene's own primitive, which `extras` of each primitive names (scene_mesh, scene_primitive).
 // POSITION is an accessor without data, zeros by the standard: it makes the file a valid glTF, but nothing to look at. A primitive without
-// indices stands for the scene's as it is. What is not glTF has no vertices to refer to: of such a scene levels hold vertices of their own,
+// indices stands for the scene's as it is; of a piece of a split object there always are some. What is not glTF has no vertices to refer
+// to: of such a scene levels hold vertices of their own, in the space of their object (lods.objects[].world_from_object of placement.json),
 // and materials their names and that of their texture (`extras`, scene_texture), without the texture.
 //
 // Node lod_K is level K; its primitives follow the order of the object's parts, whose materials they wear.
@@ -11,6 +12,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -44,11 +46,15 @@ struct StatedLevel {
   std::uint64_t triangle_count = 0;
 };
 
+/// Where the vertices of an object's levels belong; nothing where they are those of the scene file's own node, which says it. (Vertices of
+/// the scene may lie elsewhere than the file's: meshes far from their origin are brought home.)
+[[nodiscard]] std::optional<Mat4> level_transform(const Scene& scene, const Object& object);
+
 /// By object, from fine to coarse.
 [[nodiscard]] std::vector<StatedLevel> stated_levels(const Scene& scene);
 
-/// Gives objects of a scene, as it was loaded, the stated levels from the bytes of their file, and takes all others away. Throws
-/// Failure(kFileBroken) where the file does not hold them.
-void read_levels(std::span<const StatedLevel> stated, const std::string& glb, Scene& scene);
+/// Gives objects of a scene, as it was loaded, the stated levels from the bytes of their file, and takes all others away; returns how many
+/// bytes of buffers the file holds. Throws Failure(kFileBroken) where it does not hold them.
+std::uint64_t read_levels(std::span<const StatedLevel> stated, const std::string& glb, Scene& scene);
 
 }  // namespace standin

@@ -12,6 +12,7 @@
 #include "render/scene/shared_borders.h"
 #include "render/scene/simplify_mesh.h"
 #include "render/scene/surface_deviation.h"
+#include "render/scene/textured_surface.h"
 
 namespace standin {
 namespace {
@@ -21,10 +22,8 @@ constexpr double kLeastSaving = 0.2;
 // Levels are numbered by one byte.
 constexpr std::size_t kMostLevels = 255;
 // Accuracy of the error of levels whose author says nothing about it.
-constexpr std::uint64_t kAuthoredPieces = 200;  // per triangle
-constexpr double kAuthoredSlack = 1e-4;         // of the object's diagonal
-
-using Range = std::pair<std::uint32_t, std::uint32_t>;
+constexpr double kAuthoredPieces = 200.0;  // per triangle
+constexpr double kAuthoredSlack = 1e-4;    // of the diagonal of the object's own parts
 
 /// A mesh's simpler forms, as meshes of the scene.
 struct MeshLevel {
@@ -45,13 +44,14 @@ class LevelMaker {
 
   LevelSummary run() {
     simplify_meshes();
-    std::map<Range, std::vector<RangeLevel>> of_range;
+    measure_authored();
+    std::map<PartRange, std::vector<RangeLevel>> of_range;
     for (Object& object : scene_.objects) {
       if (!object.levels.empty()) {
         take_authored(object);
         continue;
       }
-      const Range range{object.first_part, object.part_count};
+      const PartRange range{object.first_part, object.part_count};
       const auto [known, fresh] = of_range.try_emplace(range);
       if (fresh) known->second = levels_of(range);
       take(known->second, object);
@@ -67,11 +67,14 @@ class LevelMaker {
       for (std::uint32_t p = 0; object.levels.empty() && p < object.part_count; ++p) used.insert(scene_.parts[object.first_part + p].mesh);
     const std::vector<std::uint32_t> meshes(used.begin(), used.end());
     const std::vector<bool> shared = borders_shared(scene_, options_.threads, budget_);
+    const std::vector<bool> textured = worn_with_texture(scene_);
     std::vector<std::vector<SimplifiedMesh>> simple(meshes.size());
     parallel_for(meshes.size(), options_.threads, budget_, [&](std::size_t i) {
       SimplifyOptions options;
       options.measure = options_.measure;
       options.lock_border = shared[meshes[i]];
+      options.textured = textured[meshes[i]];
+      options.budget = &budget_;
       simple[i] = simplified(scene_.meshes[meshes[i]], options);
     });
     for (std::size_t i = 0; i < meshes.size(); ++i) add_meshes(meshes[i], simple[i]);
@@ -88,9 +91,9 @@ class LevelMaker {
   }
 
   /// For each error that some part has a form of: each part's coarsest form of no greater error.
-  std::vector<RangeLevel> levels_of(const Range& range) {
+  std::vector<RangeLevel> levels_of(const PartRange& range) {
     std::set<double> errors;
-    for (std::uint32_t p = 0; p < range.second; ++p)
+    for (std::uint32_t p = 0; p < range.count; ++p)
       for (const MeshLevel& level : mesh_levels_[scene_.parts[range.first + p].mesh]) errors.insert(level.error_m);
     std::vector<RangeLevel> levels;
     std::uint64_t fewest = triangles_of(range);
@@ -106,9 +109,9 @@ class LevelMaker {
     return levels;
   }
 
-  [[nodiscard]] std::vector<Part> parts_within(const Range& range, double error_m) {
+  [[nodiscard]] std::vector<Part> parts_within(const PartRange& range, double error_m) {
     std::vector<Part> parts;
-    for (std::uint32_t p = 0; p < range.second; ++p) {
+    for (std::uint32_t p = 0; p < range.count; ++p) {
       Part part = scene_.parts[range.first + p];
       for (const MeshLevel& level : mesh_levels_[scene_.parts[range.first + p].mesh])
         if (level.error_m <= error_m) part.mesh = level.mesh;
@@ -117,9 +120,9 @@ class LevelMaker {
     return parts;
   }
 
-  [[nodiscard]] std::uint64_t triangles_of(const Range& range) const {
+  [[nodiscard]] std::uint64_t triangles_of(const PartRange& range) const {
     std::uint64_t sum = 0;
-    for (std::uint32_t p = 0; p < range.second; ++p) sum += scene_.meshes[scene_.parts[range.first + p].mesh].triangle_count();
+    for (std::uint32_t p = 0; p < range.count; ++p) sum += scene_.meshes[scene_.parts[range.first + p].mesh].triangle_count();
     return sum;
   }
 
@@ -139,7 +142,8 @@ class LevelMaker {
     for (ObjectLevel level : object.levels) {
       level.triangle_count = triangles_of({level.first_part, level.part_count});
       if (level.triangle_count >= fewest || level.part_count > fewest_parts) continue;
-      if (level.screen_coverage < 0.0) level.error_m = authored_error_m(object, level);
+      if (level.screen_coverage < 0.0)
+        level.error_m = greatest_stretch(object.world_from_object) * authored_error_m_.at(authored(object, level));
       level.least_distance_m = level.screen_coverage >= 0.0 ? coverage_distance_m(object, level.screen_coverage, options_)
                                                             : level.error_m / options_.error_m_per_m;
       while (!kept.empty() && kept.back().least_distance_m >= level.least_distance_m) kept.pop_back();
@@ -152,17 +156,38 @@ class LevelMaker {
     if (!object.levels.empty()) ++summary_.authored_objects;
   }
 
-  [[nodiscard]] double authored_error_m(const Object& object, const ObjectLevel& level) {
-    const Surface own = surface_of_parts(scene_, object.first_part, object.part_count);
-    const Surface other = surface_of_parts(scene_, level.first_part, level.part_count);
-    const double stretch = greatest_stretch(object.world_from_object);
+  /// An object's own parts, and those of a level of which its author says nothing.
+  struct Authored {
+    PartRange own, level;
+    friend auto operator<=>(const Authored&, const Authored&) = default;
+  };
+  static Authored authored(const Object& object, const ObjectLevel& level) {
+    return {{object.first_part, object.part_count}, {level.first_part, level.part_count}};
+  }
+
+  /// Once for all instances.
+  void measure_authored() {
+    std::set<Authored> found;
+    for (const Object& object : scene_.objects)
+      for (const ObjectLevel& level : object.levels)
+        if (const Authored pair = authored(object, level); level.screen_coverage < 0.0 && triangles_of(pair.level) < object.triangle_count)
+          found.insert(pair);
+    const std::vector<Authored> pairs(found.begin(), found.end());
+    std::vector<Deviation> off(pairs.size());
+    parallel_for(pairs.size(), options_.threads, budget_, [&](std::size_t i) { off[i] = authored_deviation(pairs[i]); });
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+      authored_error_m_[pairs[i]] = off[i].bound_m;
+      summary_.pieces += off[i].pieces;
+    }
+  }
+
+  [[nodiscard]] Deviation authored_deviation(const Authored& pair) const {
+    Box bounds;
+    for (std::uint32_t p = 0; p < pair.own.count; ++p) bounds.extend(scene_.meshes[scene_.parts[pair.own.first + p].mesh].bounds);
     DeviationLimits limits;
-    limits.absolute_m = kAuthoredSlack * object.bounds.diagonal() / stretch;
-    limits.pieces = kAuthoredPieces * (own.triangles.size() + other.triangles.size());
-    const Deviation there = deviation(own, SurfaceTree(other), limits);
-    const Deviation back = deviation(other, SurfaceTree(own), limits);
-    summary_.pieces += there.pieces + back.pieces;
-    return stretch * std::max(there.bound_m, back.bound_m);
+    limits.absolute_m = kAuthoredSlack * bounds.diagonal();
+    limits.budget = &budget_;
+    return deviation_by_place(scene_, pair.own, pair.level, limits, kAuthoredPieces);
   }
 
   Scene& scene_;
@@ -170,6 +195,7 @@ class LevelMaker {
   const WorkBudget& budget_;
   LevelSummary summary_;
   std::map<std::uint32_t, std::vector<MeshLevel>> mesh_levels_;
+  std::map<Authored, double> authored_error_m_;  // in the space of the meshes
 };
 
 }  // namespace

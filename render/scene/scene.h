@@ -46,6 +46,7 @@ struct Mesh {
   Box bounds;                          // of positions, in mesh space
   double area_m2 = 0.0;                // sum of the triangles' areas, in mesh space
   std::int32_t simplified_from = -1;   // the mesh of the scene that this one stands in for (object_levels.h), -1: none
+  bool is_piece = false;               // of an object that was split: not all triangles of the file's primitive
   std::vector<std::uint32_t>
       source;  // per vertex: its number in what the mesh was made from: that mesh, else the file's primitive; empty: the same
   [[nodiscard]] std::size_t triangle_count() const { return indices.size() / 3; }

@@ -5,9 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <memory>
 
-#include "render/scene/surface_deviation.h"
+#include "render/scene/textured_surface.h"
 
 namespace standin {
 namespace {
@@ -27,10 +26,11 @@ struct Joined {
   std::vector<std::uint32_t> id;                    // per vertex of the mesh
   std::vector<std::vector<std::uint32_t>> members;  // per joined vertex
   std::vector<glm::vec3> positions;
-  std::vector<std::uint32_t> indices;  // without triangles that have become flat
+  std::vector<std::uint32_t> indices;  // without triangles that have become flat, and those that are kept
+  std::vector<std::uint32_t> kept;     // indices of triangles that every simpler form must hold as they are
 };
 
-Joined join(const Mesh& mesh) {
+Joined join(const Mesh& mesh, const std::vector<bool>& kept) {
   Joined joined;
   joined.id.resize(mesh.positions.size());
   std::vector<glm::vec3> places;
@@ -48,7 +48,8 @@ Joined join(const Mesh& mesh) {
   }
   for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
     const Corners c{joined.id[mesh.indices[i]], joined.id[mesh.indices[i + 1]], joined.id[mesh.indices[i + 2]]};
-    if (c[0] != c[1] && c[1] != c[2] && c[2] != c[0]) joined.indices.insert(joined.indices.end(), c.begin(), c.end());
+    auto& to = kept[i / 3] ? joined.kept : joined.indices;
+    if (c[0] != c[1] && c[1] != c[2] && c[2] != c[0]) to.insert(to.end(), c.begin(), c.end());
   }
   return joined;
 }
@@ -58,63 +59,19 @@ struct Collapsed {
   double estimated_error_m = 0.0;
 };
 
+/// Where triangles are kept, the others are simplified within their borders with these.
 Collapsed collapsed(const Joined& joined, double error_m, bool lock_border) {
   const float* positions = &joined.positions[0].x;
   const float scale = meshopt_simplifyScale(positions, joined.positions.size(), sizeof(glm::vec3));
-  const unsigned int options = lock_border ? static_cast<unsigned int>(meshopt_SimplifyLockBorder) : 0U;
+  const unsigned int options = lock_border || !joined.kept.empty() ? static_cast<unsigned int>(meshopt_SimplifyLockBorder) : 0U;
   Collapsed result{std::vector<std::uint32_t>(joined.indices.size()), 0.0};
   float relative = 0.0F;
   result.indices.resize(meshopt_simplify(result.indices.data(), joined.indices.data(), joined.indices.size(), positions,
                                          joined.positions.size(), sizeof(glm::vec3), 0, static_cast<float>(error_m) / scale, options,
                                          &relative));
+  result.indices.insert(result.indices.end(), joined.kept.begin(), joined.kept.end());
   result.estimated_error_m = static_cast<double>(relative * scale);
   return result;
-}
-
-Corners sorted_corners(const std::vector<std::uint32_t>& indices, std::size_t i) {
-  Corners corners{indices[i], indices[i + 1], indices[i + 2]};
-  std::ranges::sort(corners);
-  return corners;
-}
-
-/// A joined mesh as a surface, and its distance from others.
-class JoinedSurface {
- public:
-  JoinedSurface(const std::vector<SurfacePoint>& points, const std::vector<std::uint32_t>& indices) {
-    surface_.points = points;
-    for (std::size_t i = 0; i < indices.size(); i += 3) {
-      surface_.triangles.push_back({indices[i], indices[i + 1], indices[i + 2]});
-      known_.push_back(sorted_corners(indices, i));
-    }
-    std::ranges::sort(known_);
-    tree_ = std::make_unique<SurfaceTree>(surface_);
-  }
-
-  /// Of this surface from `other`; triangles that both have need no look.
-  [[nodiscard]] Deviation deviation_from(const JoinedSurface& other, double absolute_m, double pieces_per_triangle) const {
-    Surface own{surface_.points, {}};
-    for (const Corners& triangle : surface_.triangles) {
-      Corners sorted = triangle;
-      std::ranges::sort(sorted);
-      if (!std::ranges::binary_search(other.known_, sorted)) own.triangles.push_back(triangle);
-    }
-    DeviationLimits limits;
-    limits.absolute_m = absolute_m;
-    limits.pieces = static_cast<std::uint64_t>(pieces_per_triangle * static_cast<double>(known_.size() + other.known_.size()));
-    return deviation(own, *other.tree_, limits);
-  }
-
- private:
-  Surface surface_;
-  std::vector<Corners> known_;  // sorted
-  std::unique_ptr<SurfaceTree> tree_;
-};
-
-std::vector<SurfacePoint> points_of(const Mesh& mesh, const Joined& joined) {
-  const Surface surface = surface_of(mesh, metres_per_uv(mesh));
-  std::vector<SurfacePoint> points;
-  for (const auto& members : joined.members) points.push_back(surface.points[members.front()]);
-  return points;
 }
 
 /// A coarser form with no greater error makes a finer one useless.
@@ -125,31 +82,15 @@ void drop_dominated(std::vector<SimplifiedMesh>& levels) {
   levels.assign(std::make_move_iterator(kept.rbegin()), std::make_move_iterator(kept.rend()));
 }
 
-/// The original, to hold its simpler forms against.
-class Original {
- public:
-  explicit Original(const Mesh& mesh)
-      : mesh_(mesh), joined_(join(mesh)), points_(points_of(mesh, joined_)), surface_(points_, joined_.indices) {}
-
-  [[nodiscard]] const Joined& joined() const { return joined_; }
-
-  [[nodiscard]] SimplifiedMesh estimated(const Collapsed& simple) const {
-    return {mesh_over(mesh_, joined_.members, simple.indices), simple.estimated_error_m, simple.estimated_error_m, 0};
-  }
-  [[nodiscard]] SimplifiedMesh measured(const Collapsed& simple, double absolute_m, double pieces_per_triangle) const {
-    const JoinedSurface surface(points_, simple.indices);
-    const Deviation there = surface_.deviation_from(surface, absolute_m, pieces_per_triangle);
-    const Deviation back = surface.deviation_from(surface_, absolute_m, pieces_per_triangle);
-    return {mesh_over(mesh_, joined_.members, simple.indices), std::max(there.bound_m, back.bound_m), std::max(there.found_m, back.found_m),
-            there.pieces + back.pieces};
-  }
-
- private:
-  const Mesh& mesh_;
-  Joined joined_;
-  std::vector<SurfacePoint> points_;
-  JoinedSurface surface_;
-};
+void measure(const TexturedSurface& original, const SimplifyOptions& options, double absolute_m, SimplifiedMesh& level) {
+  DeviationLimits limits;
+  limits.absolute_m = absolute_m;
+  limits.budget = options.budget;
+  const Deviation off = original.deviation_of(level.mesh, limits, options.pieces_per_triangle);
+  level.error_m = off.bound_m;
+  level.error_found_m = off.found_m;
+  level.pieces = off.pieces;
+}
 
 /// Of the vertices at one place, the one whose normal is nearest to the triangle's; sides do not matter, as shading has none.
 std::uint32_t best_member(const Mesh& mesh, const std::vector<std::uint32_t>& members, const Vec3& normal) {
@@ -193,17 +134,21 @@ Mesh mesh_over(const Mesh& mesh, const std::vector<std::vector<std::uint32_t>>& 
 std::vector<SimplifiedMesh> simplified(const Mesh& mesh, const SimplifyOptions& options) {
   std::vector<SimplifiedMesh> levels;
   if (mesh.triangle_count() < kFewestTriangles) return levels;
-  const Original original(mesh);
-  if (original.joined().indices.empty()) return levels;
+  const TexturedSurface original(mesh, options.textured);
+  const Joined joined = join(mesh, original.kept());
+  if (joined.indices.empty()) return levels;
   std::size_t fewest = mesh.triangle_count();
   for (int k = kFinest; k >= kCoarsest; --k) {
     const double aim_m = mesh.bounds.diagonal() * std::ldexp(1.0, -k);
-    const Collapsed simple = collapsed(original.joined(), aim_m, options.lock_border);
+    const Collapsed simple = collapsed(joined, aim_m, options.lock_border);
     const std::size_t triangles = simple.indices.size() / 3;
     if (triangles == 0) break;
     if (static_cast<double>(triangles) > (1.0 - options.least_saving) * static_cast<double>(fewest)) continue;
+    SimplifiedMesh level{mesh_over(mesh, joined.members, simple.indices), simple.estimated_error_m, simple.estimated_error_m, 0};
+    if (options.measure) measure(original, options, kSlack * aim_m, level);
+    if (!std::isfinite(level.error_m)) continue;
     fewest = triangles;
-    levels.push_back(options.measure ? original.measured(simple, kSlack * aim_m, options.pieces_per_triangle) : original.estimated(simple));
+    levels.push_back(std::move(level));
   }
   drop_dominated(levels);
   return levels;

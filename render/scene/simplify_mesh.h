@@ -1,15 +1,17 @@
 // Simpler forms of a mesh, each with a proven bound on how far it lies from the original (thesis 5.5.1 and 5.2.3 use geometric levels of
 // detail beside impostors, and take them as given).
 //
-// meshoptimizer collapses edges; what it returns is measured anew (surface_deviation.h), both ways and with the texture's slip: levels
-// differ from the original by no more than their error in any point. Triangles are over the mesh's own vertices. Vertices are joined where
-// place and texture coordinates agree, so that flat shading, which gives each triangle vertices of its own, does not keep a mesh from being
-// simplified; a corner then takes, of the normals at its place, the one nearest to its triangle's.
+// meshoptimizer collapses edges; what it returns is measured anew (textured_surface.h), both ways and with the texture's slip: levels
+// differ from the original by no more than their error in any point, and none is given whose error has no bound. Triangles are over the
+// mesh's own vertices. Vertices are joined where place and texture coordinates agree, so that flat shading, which gives each triangle
+// vertices of its own, does not keep a mesh from being simplified; a corner then takes, of the normals at its place, the one nearest to its
+// triangle's.
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
+#include "render/base/work.h"
 #include "render/scene/scene.h"
 
 namespace standin {
@@ -22,10 +24,12 @@ struct SimplifiedMesh {
 };
 
 struct SimplifyOptions {
-  bool lock_border = false;           // open edges stay as they are: where another mesh goes on, no crack opens
-  bool measure = true;                // false: meshoptimizer's own estimate instead of a bound, a fifth of the time
-  double least_saving = 0.2;          // of the triangles of the next finer form; less is not worth a level
-  double pieces_per_triangle = 20.0;  // work for the bound, at most
+  bool textured = true;                // some part wears the mesh with a texture: its coordinates count
+  bool lock_border = false;            // open edges stay as they are: where another mesh goes on, no crack opens
+  bool measure = true;                 // false: meshoptimizer's own estimate instead of a bound, a fifth of the time
+  double least_saving = 0.2;           // of the triangles of the next finer form; less is not worth a level
+  double pieces_per_triangle = 20.0;   // work for the bound, at most
+  const WorkBudget* budget = nullptr;  // asked now and then, where there is one
 };
 
 /// Triangles over a mesh's own vertices: three `corners` each, of which each may be any of `members[corner]`, all at one place.

@@ -165,6 +165,7 @@ class Splitter {
   Mesh extract(const Mesh& mesh, std::span<const Triangle> triangles) {
     Mesh piece;
     piece.name = mesh.name;
+    piece.is_piece = true;
     new_index_.resize(std::max(new_index_.size(), mesh.positions.size()), kUnused);
     std::vector<std::uint32_t> used;
     for (const Triangle& triangle : triangles) {

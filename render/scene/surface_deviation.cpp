@@ -6,11 +6,14 @@
 #include <numeric>
 #include <optional>
 #include <queue>
+#include <ranges>
+#include <utility>
 
 namespace standin {
 namespace {
 
 constexpr std::uint32_t kLeafTriangles = 4;
+constexpr std::uint64_t kPiecesBetweenChecks = 1024;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 SurfacePoint operator-(const SurfacePoint& a, const SurfacePoint& b) {
@@ -42,6 +45,10 @@ double distance_to_segment(const SurfacePoint& p, const SurfacePoint& a, const S
   const double length2 = dot(ab, ab);
   const double t = length2 > 0.0 ? std::clamp(dot(p - a, ab) / length2, 0.0, 1.0) : 0.0;
   return length(p - (a + t * ab));
+}
+
+bool is_finite(const SurfaceTriangle& triangle) {
+  return std::ranges::all_of(triangle, [](const SurfacePoint& p) { return std::isfinite(length(p)); });
 }
 
 /// A piece of surface that lies no farther than `bound_m` from the other surface.
@@ -158,6 +165,7 @@ class DeviationSearch {
   }
 
   void add(const SurfaceTriangle& corners, std::uint32_t guess) {
+    if (limits_.budget != nullptr && result_.pieces % kPiecesBetweenChecks == 0) limits_.budget->check();
     const SurfacePoint middle = centroid(corners);
     const SurfaceTree::Nearest nearest = look_at(middle, guess);
     const double bound_m = std::max(nearest.distance, std::min(nearest.distance + farthest_corner(corners, middle),
@@ -186,21 +194,6 @@ class DeviationSearch {
 
 }  // namespace
 
-double metres_per_uv(const Mesh& mesh) {
-  if (mesh.uvs.empty()) return 0.0;
-  double area_m2 = 0.0;
-  double area_uv = 0.0;
-  for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
-    const std::uint32_t* v = mesh.indices.data() + i;
-    const Vec3 a = mesh.positions[v[0]];
-    area_m2 += glm::length(glm::cross(Vec3(mesh.positions[v[1]]) - a, Vec3(mesh.positions[v[2]]) - a));
-    const Vec2 p = Vec2(mesh.uvs[v[1]]) - Vec2(mesh.uvs[v[0]]);
-    const Vec2 q = Vec2(mesh.uvs[v[2]]) - Vec2(mesh.uvs[v[0]]);
-    area_uv += std::abs(p.x * q.y - p.y * q.x);
-  }
-  return area_uv > 0.0 ? std::sqrt(area_m2 / area_uv) : 0.0;
-}
-
 Surface surface_of(const Mesh& mesh, double metres_per_uv) {
   Surface surface;
   surface.points.reserve(mesh.positions.size());
@@ -227,6 +220,7 @@ double distance(const SurfacePoint& point, const SurfaceTriangle& triangle) {
 
 SurfaceTree::SurfaceTree(const Surface& surface) : order_(surface.triangles.size()) {
   for (std::size_t t = 0; t < surface.triangles.size(); ++t) triangles_.push_back(surface.corners(t));
+  finite_ = std::ranges::all_of(triangles_, is_finite);
   std::iota(order_.begin(), order_.end(), 0U);
   if (!triangles_.empty()) build(0, static_cast<std::uint32_t>(triangles_.size()));
 }
@@ -293,8 +287,43 @@ SurfaceTree::Nearest SurfaceTree::nearest(const SurfacePoint& point, std::uint32
 
 Deviation deviation(const Surface& from, const SurfaceTree& to, const DeviationLimits& limits) {
   if (from.triangles.empty()) return {};
-  if (to.empty()) return {kInfinity, kInfinity, 0};
+  const auto finite = [&](std::size_t t) { return is_finite(from.corners(t)); };
+  if (to.empty() || !to.finite() || !std::ranges::all_of(std::views::iota(std::size_t{0}, from.triangles.size()), finite))
+    return {kInfinity, kInfinity, 0};
   return DeviationSearch(to, limits).run(from);
+}
+
+ComparedSurface::ComparedSurface(Surface surface) : surface_(std::move(surface)), tree_(surface_) {
+  for (std::size_t t = 0; t < surface_.triangles.size(); ++t) keys_.push_back(key_of(surface_.corners(t)));
+  sorted_ = keys_;
+  if (tree_.finite()) std::ranges::sort(sorted_);  // what is no number has no order
+}
+
+ComparedSurface::Key ComparedSurface::key_of(const SurfaceTriangle& corners) {
+  Key key;
+  for (std::size_t c = 0; c < 3; ++c)
+    for (std::size_t axis = 0; axis < 5; ++axis) key[c][axis] = coordinate(corners[c], axis);
+  std::ranges::sort(key);
+  return key;
+}
+
+bool ComparedSurface::has(const Key& triangle) const {
+  return tree_.finite() && std::ranges::binary_search(sorted_, triangle);
+}
+
+Surface ComparedSurface::without_those_of(const ComparedSurface& other) const {
+  if (!tree_.finite()) return surface_;
+  Surface own{surface_.points, {}};
+  for (std::size_t t = 0; t < surface_.triangles.size(); ++t)
+    if (!other.has(keys_[t])) own.triangles.push_back(surface_.triangles[t]);
+  return own;
+}
+
+Deviation ComparedSurface::deviation_both_ways(const ComparedSurface& other, const DeviationLimits& limits) const {
+  const Deviation there = deviation(without_those_of(other), other.tree_, limits);
+  if (there.bound_m > limits.refuted_m || there.found_m == kInfinity) return there;
+  const Deviation back = deviation(other.without_those_of(*this), tree_, limits);
+  return {std::max(there.bound_m, back.bound_m), std::max(there.found_m, back.found_m), there.pieces + back.pieces};
 }
 
 }  // namespace standin

@@ -5,8 +5,8 @@
 // the distance from a point to one triangle is convex, so over a piece of surface it is greatest in the piece's corners; pieces are halved
 // where that is not tight yet, the worst first. The bound holds whenever the search stops, so work buys accuracy, never correctness.
 //
-// Points carry their texture coordinates, scaled to metres, as two more dimensions: a surface that keeps its shape but lets its picture
-// slip has moved, too.
+// Points carry their texture coordinates, scaled to metres (textured_surface.h), as two more dimensions: a surface that keeps its shape but
+// lets its picture slip has moved, too.
 #pragma once
 
 #include <array>
@@ -14,6 +14,7 @@
 #include <limits>
 #include <vector>
 
+#include "render/base/work.h"
 #include "render/scene/scene.h"
 
 namespace standin {
@@ -33,8 +34,6 @@ struct Surface {
   }
 };
 
-/// Metres of surface per unit of texture coordinate: root of the areas' ratio, 0 without texture coordinates.
-[[nodiscard]] double metres_per_uv(const Mesh& mesh);
 [[nodiscard]] Surface surface_of(const Mesh& mesh, double metres_per_uv);
 
 /// The triangles nearest to points: a tree of boxes over all five dimensions.
@@ -49,6 +48,8 @@ class SurfaceTree {
   [[nodiscard]] Nearest nearest(const SurfacePoint& point, std::uint32_t guess = 0) const;
   [[nodiscard]] const SurfaceTriangle& triangle(std::uint32_t index) const { return triangles_[index]; }
   [[nodiscard]] bool empty() const { return triangles_.empty(); }
+  /// Whether every coordinate is a number: from anything else nothing has a distance.
+  [[nodiscard]] bool finite() const { return finite_; }
 
  private:
   struct Node {
@@ -62,6 +63,7 @@ class SurfaceTree {
   std::vector<SurfaceTriangle> triangles_;
   std::vector<std::uint32_t> order_;
   std::vector<Node> nodes_;
+  bool finite_ = true;
 };
 
 /// Distance of a point from a triangle.
@@ -73,6 +75,7 @@ struct DeviationLimits {
   double absolute_m = 0.0;                                     // a bound below this need not be any tighter
   std::uint64_t pieces = 1'000'000;                            // of surface looked at, after the triangles themselves
   double refuted_m = std::numeric_limits<double>::infinity();  // once some point is found to be farther, nothing else is asked
+  const WorkBudget* budget = nullptr;                          // asked now and then, where there is one
 };
 
 struct Deviation {
@@ -81,7 +84,30 @@ struct Deviation {
   std::uint64_t pieces = 0;
 };
 
-/// From every point of `from` to the nearest point of `to`; infinite where `to` is empty.
+/// From every point of `from` to the nearest point of `to`; infinite where `to` is empty or a coordinate of either is no finite number.
 [[nodiscard]] Deviation deviation(const Surface& from, const SurfaceTree& to, const DeviationLimits& limits);
+
+/// A surface that is held against others, with what that takes.
+class ComparedSurface {
+ public:
+  /// A triangle, whatever it is numbered and wherever it begins.
+  using Key = std::array<std::array<double, 5>, 3>;
+  [[nodiscard]] static Key key_of(const SurfaceTriangle& corners);
+
+  explicit ComparedSurface(Surface surface);
+  [[nodiscard]] std::size_t triangle_count() const { return surface_.triangles.size(); }
+  [[nodiscard]] bool has(const Key& triangle) const;
+
+  /// The greater of both ways' deviations. Triangles that both have need no look. `limits` are those of each way.
+  [[nodiscard]] Deviation deviation_both_ways(const ComparedSurface& other, const DeviationLimits& limits) const;
+
+ private:
+  [[nodiscard]] Surface without_those_of(const ComparedSurface& other) const;
+
+  Surface surface_;
+  SurfaceTree tree_;
+  std::vector<Key> keys_;    // per triangle
+  std::vector<Key> sorted_;  // the same
+};
 
 }  // namespace standin

@@ -2,10 +2,7 @@
 // materials they wear.
 
 #include <algorithm>
-#include <array>
 #include <map>
-#include <nlohmann/json.hpp>
-#include <span>
 
 #include "render/base/staged_file.h"
 #include "render/image/image_io.h"
@@ -16,50 +13,30 @@
 namespace standin {
 namespace {
 
-using OrderedJson = nlohmann::ordered_json;
-
-constexpr int kUnsignedShort = 5123;
-constexpr int kUnsignedInt = 5125;
-constexpr int kFloat = 5126;
-constexpr int kArrayBuffer = 34962;
-constexpr int kElementArrayBuffer = 34963;
-
 class GlbWriter {
  public:
   explicit GlbWriter(const Scene& scene) : scene_(scene) {}
 
-  /// Calls use(pieces) with the file's bytes in order.
-  template <class Use>
-  void encode(Use&& use) {
+  /// Valid as long as this is.
+  GlbContainer encode() {
     for (const Texture& texture : scene_.textures) add_texture(texture);
     for (const Material& material : scene_.materials) add_material(material);
     for (const Mesh& mesh : scene_.meshes) add_accessors(mesh);
     for (const Object& object : scene_.objects) add_node(object);
-    use_chunks(assembled(), use);
+    return {assembled(), binary_};
   }
 
  private:
-  // Views start at multiples of 4, as accessors need.
-  std::size_t add_view(const void* data, std::size_t size, int target) {
-    binary_.resize((binary_.size() + 3) / 4 * 4, 0);
-    OrderedJson view{{"buffer", 0}, {"byteOffset", binary_.size()}, {"byteLength", size}};
-    if (target != 0) view["target"] = target;
-    const auto* first = static_cast<const std::uint8_t*>(data);
-    binary_.insert(binary_.end(), first, first + size);
-    views_.push_back(std::move(view));
-    return views_.size() - 1;
-  }
-
   template <typename T>
   std::size_t add_accessor(const std::vector<T>& values, int component_type, const char* type, int target) {
-    const std::size_t view = add_view(values.data(), values.size() * sizeof(T), target);
+    const std::size_t view = add_buffer_view(views_, binary_, bytes_of_values(values), 0, target);
     accessors_.push_back({{"bufferView", view}, {"componentType", component_type}, {"count", values.size()}, {"type", type}});
     return accessors_.size() - 1;
   }
 
   void add_texture(const Texture& texture) {
     const std::string png = encode_png(texture);
-    const std::size_t view = add_view(png.data(), png.size(), 0);
+    const std::size_t view = add_buffer_view(views_, binary_, png, 0, 0);
     const std::size_t index = images_.size();
     images_.push_back({{"name", texture.name}, {"mimeType", "image/png"}, {"bufferView", view}});
     textures_.push_back({{"source", index}});
@@ -84,22 +61,23 @@ class GlbWriter {
 
   // The primitive of each mesh, but for its material.
   void add_accessors(const Mesh& mesh) {
-    OrderedJson attributes{{"POSITION", add_accessor(mesh.positions, kFloat, "VEC3", kArrayBuffer)}};
+    OrderedJson attributes{{"POSITION", add_accessor(mesh.positions, gltf::kFloat, "VEC3", gltf::kArrayBuffer)}};
     OrderedJson& accessor = accessors_.back();
     const auto corner = [](const Vec3& v) { return OrderedJson{v.x, v.y, v.z}; };
     Box bounds;
     for (const glm::vec3& position : mesh.positions) bounds.extend(Vec3(position));
     accessor["min"] = corner(bounds.min);
     accessor["max"] = corner(bounds.max);
-    attributes["NORMAL"] = add_accessor(mesh.normals, kFloat, "VEC3", kArrayBuffer);
-    if (!mesh.uvs.empty()) attributes["TEXCOORD_0"] = add_accessor(mesh.uvs, kFloat, "VEC2", kArrayBuffer);
+    attributes["NORMAL"] = add_accessor(mesh.normals, gltf::kFloat, "VEC3", gltf::kArrayBuffer);
+    if (!mesh.uvs.empty()) attributes["TEXCOORD_0"] = add_accessor(mesh.uvs, gltf::kFloat, "VEC2", gltf::kArrayBuffer);
     primitives_.push_back({{"attributes", std::move(attributes)}, {"indices", add_indices(mesh)}});
   }
 
   std::size_t add_indices(const Mesh& mesh) {
-    if (mesh.positions.size() > 65535) return add_accessor(mesh.indices, kUnsignedInt, "SCALAR", kElementArrayBuffer);
+    if (mesh.positions.size() > gltf::kHighestShort + 1U)
+      return add_accessor(mesh.indices, gltf::kUnsignedInt, "SCALAR", gltf::kElementArrayBuffer);
     const std::vector<std::uint16_t> narrow(mesh.indices.begin(), mesh.indices.end());
-    return add_accessor(narrow, kUnsignedShort, "SCALAR", kElementArrayBuffer);
+    return add_accessor(narrow, gltf::kUnsignedShort, "SCALAR", gltf::kElementArrayBuffer);
   }
 
   std::size_t mesh_of(const Object& object) {
@@ -137,27 +115,14 @@ class GlbWriter {
     if (unlit) json["extensionsUsed"] = {"KHR_materials_unlit"};
     json["scene"] = 0;
     json["scenes"] = OrderedJson::array({{{"nodes", roots}}});
-    const auto add = [&](const char* key, const OrderedJson& list) {
-      if (!list.empty()) json[key] = list;  // glTF forbids empty lists
-    };
-    add("nodes", nodes_);
-    add("meshes", meshes_);
-    add("materials", materials_);
-    add("textures", textures_);
-    add("images", images_);
-    add("accessors", accessors_);
-    add("bufferViews", views_);
-    json["buffers"] = OrderedJson::array({{{"byteLength", binary_.size()}}});
+    add_unless_empty(json, "nodes", nodes_);
+    add_unless_empty(json, "meshes", meshes_);
+    add_unless_empty(json, "materials", materials_);
+    add_unless_empty(json, "textures", textures_);
+    add_unless_empty(json, "images", images_);
+    add_unless_empty(json, "accessors", accessors_);
+    add_unless_empty(json, "bufferViews", views_);
     return json;
-  }
-
-  template <class Use>
-  void use_chunks(const OrderedJson& json, Use&& use) {
-    binary_.resize((binary_.size() + 3) / 4 * 4, 0);
-    const GlbContainer container(json.dump(-1, ' ', false, OrderedJson::error_handler_t::replace),
-                                 {reinterpret_cast<const char*>(binary_.data()), binary_.size()});
-    const std::array<std::string_view, 4> pieces = container.pieces();
-    use(std::span<const std::string_view>(pieces));
   }
 
   const Scene& scene_;
@@ -168,7 +133,7 @@ class GlbWriter {
   OrderedJson images_ = OrderedJson::array();
   OrderedJson accessors_ = OrderedJson::array();
   OrderedJson views_ = OrderedJson::array();
-  std::vector<std::uint8_t> binary_;
+  std::string binary_;
   std::vector<OrderedJson> primitives_;                                                       // per Scene::meshes
   std::map<std::vector<std::pair<std::uint32_t, std::uint32_t>>, std::size_t> mesh_indices_;  // by (mesh, material) of each part
 };
@@ -176,15 +141,12 @@ class GlbWriter {
 }  // namespace
 
 std::string scene_glb(const Scene& scene) {
-  std::string bytes;
-  GlbWriter(scene).encode([&](std::span<const std::string_view> pieces) {
-    for (const std::string_view piece : pieces) bytes += piece;
-  });
-  return bytes;
+  return GlbWriter(scene).encode().joined();
 }
 
 void write_scene_glb(const Scene& scene, const std::filesystem::path& file) {
-  GlbWriter(scene).encode([&](std::span<const std::string_view> pieces) { write_file(file, pieces); });
+  GlbWriter writer(scene);
+  write_file(file, writer.encode().pieces());
 }
 
 }  // namespace standin

@@ -81,15 +81,22 @@ VisibleSet sample_visible_set(const Scene& scene, const Raytracer& raytracer, co
   return RegionSampler(scene, raytracer, region, options, stream, budget).sample();
 }
 
-std::vector<VisibleSet> sample_visible_sets(const Scene& scene, const Raytracer& raytracer, const std::vector<Box>& regions,
-                                            const VisibilityOptions& options, int threads, const WorkBudget& budget) {
+std::vector<VisibleSet> sample_visible_sets(const std::vector<Box>& regions, int threads, const WorkBudget& budget,
+                                            const SampleRegion& sample) {
   std::vector<VisibleSet> sets(regions.size());
   std::atomic<std::size_t> done{0};
   parallel_for(regions.size(), threads, budget, [&](std::size_t i) {
-    sets[i] = sample_visible_set(scene, raytracer, regions[i], options, i, budget);
+    sets[i] = sample(regions[i], i);
     budget.report("visibility", static_cast<double>(++done) / static_cast<double>(regions.size()));
   });
   return sets;
+}
+
+std::vector<VisibleSet> sample_visible_sets(const Scene& scene, const Raytracer& raytracer, const std::vector<Box>& regions,
+                                            const VisibilityOptions& options, int threads, const WorkBudget& budget) {
+  return sample_visible_sets(regions, threads, budget, [&](const Box& region, std::uint64_t stream) {
+    return sample_visible_set(scene, raytracer, region, options, stream, budget);
+  });
 }
 
 }  // namespace standin

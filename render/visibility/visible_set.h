@@ -11,6 +11,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "render/base/work.h"
@@ -39,6 +40,10 @@ struct VisibleSet {
                                             const VisibilityOptions& options, std::uint64_t stream, const WorkBudget& budget);
 
 /// One set per region, independent of the number of threads.
+/// Of region number `stream`.
+using SampleRegion = std::function<VisibleSet(const Box& region, std::uint64_t stream)>;
+[[nodiscard]] std::vector<VisibleSet> sample_visible_sets(const std::vector<Box>& regions, int threads, const WorkBudget& budget,
+                                                          const SampleRegion& sample);
 [[nodiscard]] std::vector<VisibleSet> sample_visible_sets(const Scene& scene, const Raytracer& raytracer, const std::vector<Box>& regions,
                                                           const VisibilityOptions& options, int threads, const WorkBudget& budget);
 

@@ -25,29 +25,29 @@ Fingerprint shared_inputs(const SearchScene& job) {
   return to.fingerprint();
 }
 
-void write(const DirectionInterval& interval, ByteWriter& bytes) {
-  bytes.value(interval.face);
-  bytes.value(interval.level);
-  bytes.value(interval.i);
-  bytes.value(interval.j);
+template <class Bytes, class Interval>
+void pass_interval(Bytes& bytes, Interval& interval) {
+  bytes.pass(interval.face);
+  bytes.pass(interval.level);
+  bytes.pass(interval.i);
+  bytes.pass(interval.j);
 }
 
-DirectionInterval read_interval(ByteReader& bytes) {
-  DirectionInterval interval;
-  interval.face = bytes.value<Face>();
-  interval.level = bytes.value<int>();
-  interval.i = bytes.value<int>();
-  interval.j = bytes.value<int>();
-  return interval;
+template <class Bytes, class Region>
+void pass_region(Bytes& bytes, Region& region) {
+  pass_interval(bytes, region.interval);
+  bytes.pass(region.pixels_capped);
+  bytes.pass(region.constant_ms);
+  bytes.pass(region.predicted_ms);
 }
 
-HotRegion read_region(ByteReader& bytes) {
-  HotRegion region;
-  region.interval = read_interval(bytes);
-  region.pixels_capped = bytes.value<std::uint8_t>() != 0;
-  region.constant_ms = bytes.value<double>();
-  region.predicted_ms = bytes.value<double>();
-  return region;
+// Of a search but for its regions, which follow, and their number.
+template <class Bytes, class Search>
+void pass_summary(Bytes& bytes, Search& search, std::uint64_t& regions) {
+  bytes.pass(search.predicted_budget_ms);
+  bytes.pass(search.found.worst_predicted_ms);
+  pass_interval(bytes, search.found.worst_interval);
+  bytes.pass(regions);
 }
 
 std::vector<RegionTerm> read_terms(ByteReader& bytes, const std::vector<std::uint32_t>& by_rank) {
@@ -65,12 +65,11 @@ std::vector<RegionTerm> read_terms(ByteReader& bytes, const std::vector<std::uin
 
 RememberedSearch read_search(ByteReader& bytes, const std::vector<std::uint32_t>& by_rank) {
   RememberedSearch search;
-  search.predicted_budget_ms = bytes.value<double>();
-  search.found.worst_predicted_ms = bytes.value<double>();
-  search.found.worst_interval = read_interval(bytes);
-  const auto regions = bytes.value<std::uint64_t>();
+  std::uint64_t regions = 0;
+  pass_summary(bytes, search, regions);
   for (std::uint64_t i = 0; i < regions; ++i) {
-    const HotRegion region = read_region(bytes);
+    HotRegion region;
+    pass_region(bytes, region);
     search.found.add(region, read_terms(bytes, by_rank));
   }
   search.found.terms.shrink_to_fit();
@@ -135,15 +134,10 @@ void SearchCache::keep(const SearchRequest& request, const DirectionSearchResult
 std::string SearchCache::bytes_of(const RememberedSearch& search, const std::vector<std::uint32_t>& by_rank) const {
   const auto rank_of = [&](std::uint32_t id) { return job_.hierarchy_rank[id]; };
   ByteWriter bytes;
-  bytes.value(search.predicted_budget_ms);
-  bytes.value(search.found.worst_predicted_ms);
-  write(search.found.worst_interval, bytes);
-  bytes.value(std::uint64_t{search.found.hot.size()});
+  std::uint64_t regions = search.found.hot.size();
+  pass_summary(bytes, search, regions);
   for (const HotRegion& region : search.found.hot) {
-    write(region.interval, bytes);
-    bytes.value(static_cast<std::uint8_t>(region.pixels_capped ? 1 : 0));
-    bytes.value(region.constant_ms);
-    bytes.value(region.predicted_ms);
+    pass_region(bytes, region);
     std::vector<std::uint32_t> positions;
     std::vector<double> costs_ms;
     for (const RegionTerm& term : search.found.terms_of(region)) {

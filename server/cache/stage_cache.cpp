@@ -3,10 +3,12 @@
 #include <signal.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
 #include <charconv>
-#include <cstring>
 #include <fstream>
+#include <new>
+#include <stdexcept>
 #include <utility>
 #include <vector>
 
@@ -44,22 +46,19 @@ std::string next_bytes(std::ifstream& stream, std::size_t size) {
   return bytes;
 }
 
-// "": written. Errors of the stream hide theirs in errno.
+// "": written.
 std::string write_whole(const fs::path& staged, const fs::path& file, std::string_view header, std::string_view payload) {
   std::error_code error;
   fs::create_directories(file.parent_path(), error);
-  if (error) return error.message();
-  errno = 0;
-  std::ofstream stream(staged, std::ios::binary | std::ios::trunc);
-  stream.write(header.data(), static_cast<std::streamsize>(header.size()));
-  stream.write(payload.data(), static_cast<std::streamsize>(payload.size()));
-  stream.close();
-  const int why = errno;
-  if (stream) fs::rename(staged, file, error);
-  if (stream && !error) return "";
-  std::error_code ignored;
-  fs::remove(staged, ignored);
-  return error ? error.message() : why != 0 ? std::strerror(why) : "it cannot be written";
+  return error ? error.message() : why_not_written(staged, file, std::array{header, payload});
+}
+
+// That the header says follow it; nothing where it is no header.
+std::optional<std::uint64_t> payload_size(std::string_view header) {
+  if (header.size() != header_size()) return std::nullopt;
+  ByteReader bytes(header);
+  (void)bytes.raw(kMagic.size() + sizeof kLayout + sizeof(Fingerprint));
+  return bytes.value<std::uint64_t>();
 }
 
 bool is_entry_name(std::string_view name) {
@@ -100,15 +99,15 @@ std::vector<Entry> entries_of(const fs::path& folder) {
   return entries;
 }
 
-// Throws where a file cannot be made in the folder, with the reason.
+// Throws where a file cannot be made in the folder, with the reason. Each probe has a name of its own, so that threads may open the folder
+// at the same time.
 void require_writable(const fs::path& folder) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  std::string why = error ? error.message() : "";
-  const fs::path probe = staged_path(folder / "probe");
-  if (why.empty()) why = write_whole(probe, folder / ("probe-" + std::to_string(::getpid())), "", "");
+  static std::atomic<std::uint64_t> probes{0};
+  const fs::path probe = folder / ("probe-" + std::to_string(probes++) + "-" + std::to_string(::getpid()));
+  const std::string why = write_whole(staged_path(probe), probe, "", "");
   if (!why.empty()) throw Failure(ErrorWord::kBadUsage, "--cache " + folder.string() + " cannot be written to: " + why);
-  fs::remove(folder / ("probe-" + std::to_string(::getpid())), error);
+  std::error_code ignored;
+  fs::remove(probe, ignored);
 }
 
 }  // namespace
@@ -125,17 +124,23 @@ fs::path StageCache::file_of(const CacheStage& stage, const Fingerprint& inputs)
   return folder_ / stage.name / name_of(stage, inputs).hex();
 }
 
-// No more is read than the file can hold, whatever it says.
-std::optional<std::string> StageCache::read(const CacheStage& stage, const Fingerprint& name) const {
+// A length that is not the file's is believed by nobody: no memory is asked for on a damaged entry's word.
+std::optional<std::string> StageCache::read(const CacheStage& stage, const Fingerprint& name) const try {
   const fs::path file = folder_ / stage.name / name.hex();
   std::error_code error;
   const auto size = fs::file_size(file, error);  // an error for what is no file
-  if (error || size < header_size()) return std::nullopt;
+  if (error) return std::nullopt;
   std::ifstream stream(file, std::ios::binary);
   const std::string header = next_bytes(stream, header_size());
-  std::string payload = next_bytes(stream, size - header_size());
+  const auto claimed = payload_size(header);
+  if (!claimed || size < header.size() || *claimed != size - header.size()) return std::nullopt;
+  std::string payload = next_bytes(stream, *claimed);
   if (header != header_of(name, payload)) return std::nullopt;
   return payload;
+} catch (const std::bad_alloc&) {
+  return std::nullopt;  // no stage of ours wrote more than it could hold
+} catch (const std::length_error&) {
+  return std::nullopt;
 }
 
 void StageCache::keep(const CacheStage& stage, const Fingerprint& inputs, std::string_view payload) {

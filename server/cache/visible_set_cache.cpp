@@ -1,9 +1,7 @@
 #include "server/cache/visible_set_cache.h"
 
-#include <atomic>
 #include <numeric>
 
-#include "render/base/parallel.h"
 #include "server/cache/camera_content.h"
 #include "server/cache/object_content.h"
 
@@ -19,45 +17,35 @@ Fingerprint what_blocks(const Scene& scene) {
   return to.fingerprint();
 }
 
-std::string bytes_of(const VisibleSet& set) {
-  ByteWriter bytes;
-  bytes.list(set.objects);
-  bytes.value(set.missed_share_bound);
-  bytes.value(set.rays);
-  bytes.value(set.misses);
-  return bytes.bytes();
+template <class Bytes, class Set>
+void pass_set(Bytes& bytes, Set& set) {
+  bytes.pass(set.objects);
+  bytes.pass(set.missed_share_bound);
+  bytes.pass(set.rays);
+  bytes.pass(set.misses);
 }
 
 VisibleSet read_set(ByteReader& bytes, std::size_t objects) {
   VisibleSet set;
-  set.objects = bytes.list<std::uint32_t>();
-  set.missed_share_bound = bytes.value<double>();
-  set.rays = bytes.value<std::uint64_t>();
-  set.misses = bytes.value<std::uint64_t>();
+  pass_set(bytes, set);
   for (const std::uint32_t object : set.objects)
     if (object >= objects) throw Failure(ErrorWord::kFileBroken, "a visible set names object " + std::to_string(object));
   return set;
 }
 
-std::string bytes_of(const VisibilityAudit& audit) {
-  ByteWriter bytes;
-  bytes.value(audit.mean_missed_share_bound);
-  bytes.value(audit.rays);
-  bytes.value(audit.misses);
-  bytes.value(audit.views);
-  bytes.value(audit.worst_view_share);
-  bytes.value(audit.mean_worst_share);
-  return bytes.bytes();
+template <class Bytes, class Audit>
+void pass_audit(Bytes& bytes, Audit& audit) {
+  bytes.pass(audit.mean_missed_share_bound);
+  bytes.pass(audit.rays);
+  bytes.pass(audit.misses);
+  bytes.pass(audit.views);
+  bytes.pass(audit.worst_view_share);
+  bytes.pass(audit.mean_worst_share);
 }
 
 VisibilityAudit read_audit(ByteReader& bytes) {
   VisibilityAudit audit;
-  audit.mean_missed_share_bound = bytes.value<double>();
-  audit.rays = bytes.value<std::uint64_t>();
-  audit.misses = bytes.value<std::uint64_t>();
-  audit.views = bytes.value<std::uint64_t>();
-  audit.worst_view_share = bytes.value<double>();
-  audit.mean_worst_share = bytes.value<double>();
+  pass_audit(bytes, audit);
   return audit;
 }
 
@@ -81,19 +69,16 @@ VisibleSet VisibleSetCache::recall_or_sample(const Box& region, const Visibility
   const auto read = [&](ByteReader& bytes) { return read_set(bytes, scene_.objects.size()); };
   if (auto known = cache_->recall(kVisibleSets, inputs, read)) return *std::move(known);
   VisibleSet set = sample_visible_set(scene_, raytracer_, region, options, stream, budget);
-  cache_->keep(kVisibleSets, inputs, bytes_of(set));
+  ByteWriter bytes;
+  pass_set(bytes, set);
+  cache_->keep(kVisibleSets, inputs, bytes.bytes());
   return set;
 }
 
 std::vector<VisibleSet> VisibleSetCache::sets(const std::vector<Box>& regions, const VisibilityOptions& options, int threads,
                                               const WorkBudget& budget) const {
-  std::vector<VisibleSet> found(regions.size());
-  std::atomic<std::size_t> done{0};
-  parallel_for(regions.size(), threads, budget, [&](std::size_t i) {
-    found[i] = recall_or_sample(regions[i], options, i, budget);
-    budget.report("visibility", static_cast<double>(++done) / static_cast<double>(regions.size()));
-  });
-  return found;
+  return sample_visible_sets(regions, threads, budget,
+                             [&](const Box& region, std::uint64_t stream) { return recall_or_sample(region, options, stream, budget); });
 }
 
 VisibilityAudit VisibleSetCache::audit(const std::vector<Box>& regions, const std::vector<VisibleSet>& sets, const Camera& camera,
@@ -108,7 +93,9 @@ VisibilityAudit VisibleSetCache::audit(const std::vector<Box>& regions, const st
   const Fingerprint inputs = to.fingerprint();
   if (const auto known = cache_->recall(kVisibilityAudits, inputs, read_audit)) return *known;
   const VisibilityAudit audit = look();
-  cache_->keep(kVisibilityAudits, inputs, bytes_of(audit));
+  ByteWriter bytes;
+  pass_audit(bytes, audit);
+  cache_->keep(kVisibilityAudits, inputs, bytes.bytes());
   return audit;
 }
 

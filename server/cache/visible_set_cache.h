@@ -1,7 +1,8 @@
 // Visible sets (render/visibility) that are looked up before they are sampled, one entry for each 3D leaf, and their audit, one for all.
 //
 // Any triangle of the scene may block a leaf's rays, and rays are aimed at every object, so a set depends on the triangles and masks of the
-// whole scene: an edit of geometry anywhere asks for all sets anew, one of colours or textures (but for masks) for none.
+// whole scene: an edit of geometry anywhere asks for all sets anew, one of colours or of a texture's pixels (but for masks) for none. That
+// a material gets or loses a texture counts as geometry (add_sharing).
 #pragma once
 
 #include "render/visibility/visible_set.h"

@@ -62,8 +62,11 @@ void open_levels(const CommandContext& context, OpenedPlacement& opened) {
   const fs::path file = fs::path(context.arguments.folder) / "lods.glb";
   const std::string glb = read_file(file);
   require_same("levels of detail", file.string(), sha256_hex(glb), opened.file.lods_sha256);
-  read_levels(opened.file.lods, glb, opened.scene);
-  opened.lods_bytes = write_levels(opened.scene).buffer_bytes;
+  opened.lods_bytes = read_levels(opened.file.lods, glb, opened.scene);
+  for (const PlacementLevels& levels : opened.file.placement.levels)
+    if (levels.world_from_object != level_transform(opened.scene, opened.scene.objects[levels.object]))
+      throw Failure(ErrorWord::kFileBroken,
+                    "placement.json: lods: world_from_object of object " + std::to_string(levels.object) + " differs from the scene's");
 }
 
 OpenedPlacement open_placement(const CommandContext& context) {

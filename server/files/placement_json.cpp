@@ -1,8 +1,10 @@
 #include "server/files/placement_json.h"
 
 #include <algorithm>
+#include <array>
 #include <glm/trigonometric.hpp>
 #include <map>
+#include <optional>
 #include <tuple>
 
 #include "render/base/error.h"
@@ -240,6 +242,26 @@ PlacementImpostor to_impostor(const json& value) {
   return impostor;
 }
 
+json matrix_json(const Mat4& matrix) {
+  json list = json::array();
+  for (int column = 0; column < 4; ++column)
+    for (int row = 0; row < 4; ++row) list.push_back(matrix[column][row]);
+  return list;
+}
+
+json optional_matrix_json(const std::optional<Mat4>& matrix) {
+  return matrix ? matrix_json(*matrix) : json();
+}
+
+std::optional<Mat4> to_matrix(const json& value) {
+  if (value.is_null()) return std::nullopt;
+  const auto numbers = value.get<std::array<double, 16>>();
+  Mat4 matrix(1.0);
+  for (int column = 0; column < 4; ++column)
+    for (int row = 0; row < 4; ++row) matrix[column][row] = numbers.at(static_cast<std::size_t>(4 * column + row));
+  return matrix;
+}
+
 json level_json(const StatedLevel& level) {
   return {{"least_distance", level.least_distance_m},
           {"error", level.error_m < 0.0 ? json() : json(level.error_m)},
@@ -253,19 +275,19 @@ json lods_json(const PlacementFile& file, const Scene& scene) {
   json objects = json::array();
   for (const StatedLevel& level : stated_levels(scene)) {
     if (objects.empty() || objects.back()["object"] != level.object)
-      objects.push_back({{"object", level.object}, {"levels", json::array()}});
+      objects.push_back({{"object", level.object},
+                         {"world_from_object", optional_matrix_json(level_transform(scene, scene.objects[level.object]))},
+                         {"levels", json::array()}});
     objects.back()["levels"].push_back(level_json(level));
   }
-  return {{"error_px", file.spec.lods_error_px},
-          {"asset", {{"file", "lods.glb"}, {"sha256", file.lods_sha256}}},
-          {"objects", std::move(objects)}};
+  return {{"asset", {{"file", "lods.glb"}, {"sha256", file.lods_sha256}}}, {"objects", std::move(objects)}};
 }
 
 void read_lods(const json& lods, const json& objects, PlacementFile& file) {
   if (lods.is_null()) return;
   file.lods_sha256 = lods.at("asset").at("sha256");
   for (const auto& entry : lods.at("objects")) {
-    PlacementLevels levels{entry.at("object"), {}, {}};
+    PlacementLevels levels{entry.at("object"), {}, {}, to_matrix(entry.at("world_from_object"))};
     if (levels.object >= objects.size()) throw Failure(ErrorWord::kFileBroken, "lods.objects names an object that does not exist");
     levels.bounds = to_box(objects.at(levels.object).at("bounds"));
     for (const auto& level : entry.at("levels")) {
@@ -326,13 +348,6 @@ PlacementFile parse(const json& object) {
   placement.root_side_m = file.view_space.root_side_m;
   check_references(placement, object.at("scene").at("objects").size());
   return file;
-}
-
-json matrix_json(const Mat4& matrix) {
-  json list = json::array();
-  for (int column = 0; column < 4; ++column)
-    for (int row = 0; row < 4; ++row) list.push_back(matrix[column][row]);
-  return list;
 }
 
 }  // namespace

@@ -35,7 +35,9 @@ json to_json(const CacheFigures& figures) {
 }
 
 bool lies_in(const std::filesystem::path& path, const std::filesystem::path& folder) {
-  const auto relative = std::filesystem::weakly_canonical(path).lexically_relative(std::filesystem::weakly_canonical(folder));
+  // What does not exist yet is made canonical only as far as it does, and stays relative where it was.
+  const auto canonical = [](const std::filesystem::path& any) { return std::filesystem::weakly_canonical(std::filesystem::absolute(any)); };
+  const auto relative = canonical(path).lexically_relative(canonical(folder));
   return !relative.empty() && *relative.begin() != "..";
 }
 

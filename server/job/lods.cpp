@@ -110,7 +110,7 @@ void ship(const LevelsAsLoaded& before, World& world) {
   lods.sha256 = sha256_hex(lods.file.glb);
   const std::vector<StatedLevel> stated = stated_levels(world.scene);
   before.restore(world.scene);
-  read_levels(stated, lods.file.glb, world.scene);
+  (void)read_levels(stated, lods.file.glb, world.scene);
 }
 
 bool has_levels(const Object& object) {

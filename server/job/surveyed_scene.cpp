@@ -33,12 +33,6 @@ void add_sizes(Surveyed& job, const JobSpec& spec, const Subdivision* problem, S
     job.sizes = clock.run("size_model", [&] { return fit_sizes(job, spec, budget); });
 }
 
-std::unique_ptr<SearchMemory> search_cache(const Surveyed& job) {
-  const World& world = job.world;
-  const SearchScene scene{world.scene, world.hierarchy.rank, world.visibility, job.target.model, world.camera, world.view_space_options};
-  return std::make_unique<SearchCache>(*job.cache, scene);
-}
-
 // What impostors could do for the worst views.
 void add_reach(Surveyed& job, const JobSpec& spec, const Subdivision* problem, StageClock& clock, const WorkBudget& budget) {
   const TimeModel& model = job.target.model;
@@ -61,9 +55,16 @@ void load_job(const JobFiles& files, const JobSpec& spec, StageClock& clock, con
   job.cache = open_cache(spec, files.folder);
   job.target = read_target(files.target);
   build_world(files.scene, spec, clock, budget, job.world, job.cache.get());
-  // Sampled views depend on the cells' parts, and what is known beside them on the budget: neither is in a search's name.
-  if (job.cache != nullptr && region_bounds(spec) != RegionBounds::kByView) job.searches = search_cache(job);
+  job.searches = fresh_searches(job, spec);
   job.candidate_options = candidate_options_of(spec, job.world.threads);
+}
+
+// Sampled views depend on the cells' parts, and what is known beside them on the budget: neither is in a search's name.
+std::unique_ptr<SearchMemory> fresh_searches(const Surveyed& job, const JobSpec& spec) {
+  if (job.cache == nullptr || region_bounds(spec) == RegionBounds::kByView) return std::make_unique<SearchMemory>();
+  const World& world = job.world;
+  const SearchScene scene{world.scene, world.hierarchy.rank, world.visibility, job.target.model, world.camera, world.view_space_options};
+  return std::make_unique<SearchCache>(*job.cache, scene);
 }
 
 Subdivision problem_views(const Surveyed& job, double predicted_budget_ms, const WorkBudget& budget, std::vector<CellKey> leaves) {
@@ -80,7 +81,7 @@ std::optional<Subdivision> levels_in_vain(Surveyed& job, const JobSpec& spec, co
   if (!job.world.lods.used || spec.lods == "on" || !problem.cpvs.empty()) return std::nullopt;
   std::vector<std::vector<ObjectLevel>> levels;
   for (Object& object : job.world.scene.objects) levels.push_back(std::exchange(object.levels, {}));
-  auto searches = std::exchange(job.searches, nullptr);  // of the scene with its levels
+  auto searches = std::exchange(job.searches, fresh_searches(job, spec));  // those of the scene with its levels
   Subdivision without = problem_views(job, job.target.model.predicted_budget_ms(spec.budget_ms), budget);
   job.searches = std::move(searches);
   for (std::size_t id = 0; id < levels.size(); ++id) job.world.scene.objects[id].levels = std::move(levels[id]);

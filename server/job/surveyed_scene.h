@@ -35,6 +35,9 @@ struct Surveyed {
 /// Stages load, view_space, visibility and lods. Opens the cache that `spec` names, if it does, before any work is done.
 void load_job(const JobFiles& files, const JobSpec& spec, StageClock& clock, const WorkBudget& budget, Surveyed& job);
 
+/// What is known of searches of the scene as it is now: nothing yet, or what the job's cache holds.
+[[nodiscard]] std::unique_ptr<SearchMemory> fresh_searches(const Surveyed& job, const JobSpec& spec);
+
 /// The regions whose predicted bound exceeds the budget. `leaves`: of these leaf cubes, sorted; empty: of all.
 [[nodiscard]] Subdivision problem_views(const Surveyed& job, double predicted_budget_ms, const WorkBudget& budget,
                                         std::vector<CellKey> leaves = {});

@@ -13,6 +13,7 @@
 #include "render/scene/load.h"
 #include "render/scene/object_levels.h"
 #include "render/scene/simplify_mesh.h"
+#include "render/scene/textured_surface.h"
 #include "render/view/camera.h"
 #include "render/view/level_camera.h"
 
@@ -58,6 +59,7 @@ constexpr double kNothing = 1e-4;
 
 // Bound over what was found, by the work that a triangle may take.
 void print_bounds(const Scene& scene, std::size_t mesh_count) {
+  const std::vector<bool> textured = worn_with_texture(scene);
   std::printf("| pieces per triangle, at most | seconds | pieces | bound / found: median | 90 %% | most |\n|---|---|---|---|---|---|\n");
   for (const double work : {0.0, 1.0, 5.0, 20.0, 100.0}) {
     SimplifyOptions options;
@@ -65,11 +67,13 @@ void print_bounds(const Scene& scene, std::size_t mesh_count) {
     std::vector<double> ratios;
     std::uint64_t pieces = 0;
     const auto start = std::chrono::steady_clock::now();
-    for (std::size_t m = 0; m < mesh_count; ++m)
+    for (std::size_t m = 0; m < mesh_count; ++m) {
+      options.textured = textured[m];
       for (const SimplifiedMesh& level : simplified(scene.meshes[m], options)) {
         pieces += level.pieces;
         ratios.push_back(level.error_m / std::max(level.error_found_m, kNothing * scene.meshes[m].bounds.diagonal()));
       }
+    }
     const double seconds = seconds_since(start);
     std::sort(ratios.begin(), ratios.end());
     const auto at = [&](double share) { return ratios.empty() ? 0.0 : ratios[static_cast<std::size_t>(share * (ratios.size() - 1))]; };

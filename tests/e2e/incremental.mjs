@@ -10,9 +10,10 @@ import { expectExit, readJson, resultOf, scratch, source, standin, start, target
 const folder = scratch();
 const path = (name) => join(folder, name);
 const city = path("city.glb");
-expectExit(0, "make-city", "--objects", "60", "--triangles", "60000", "--seed", "3", "-o", city);
+expectExit(0, "make-city", "--objects", "60", "--triangles", "24000", "--seed", "3", "-o", city);
 
-const job = ["--target", target, "--config", join(source, "tests/e2e/small.toml"), "--refine-levels", "1", "--size-bakes", "6", "--verify-views", "0"];
+const job = ["--target", target, "--config", join(source, "tests/e2e/small.toml"), "--refine-levels", "1", "--size-bakes", "3", "--verify-views", "0",
+             "--survey-views", "100", "--width", "256", "--height", "256"];
 const kStages = ["visible_sets", "visibility_audits", "searches", "bakes"];
 const kFiles = ["placement.json", "impostors.glb"];
 const budgetBetween = (share) => {
@@ -43,7 +44,7 @@ expectExit(0, "survey", city, ...job, "--quiet", "-o", path("survey"));
 const surveyed = readJson(join(path("survey"), "metrics.json"));
 const budget = budgetBetween(0.3);
 const full = place("full", city, budget);
-const first = withCache("first", city, budget, "cache");
+const first = withCache("first", city, budget, "cache", "--threads", "1");
 
 /** The scene after an edit. */
 function edited(name, change) {
@@ -66,16 +67,15 @@ test("an empty cache changes nothing, and holds what was made", () => {
   assert.equal(first.metrics.cache.folder_bytes, entries("cache").reduce((sum, file) => sum + readFileSync(file).length, 0));
 });
 
-for (const threads of ["1", "3"])
-  test(`the same job again makes nothing anew, on ${threads} thread(s)`, () => {
-    const again = withCache(`again${threads}`, city, budget, "cache", "--threads", threads);
-    expectSameBytes(`again${threads}`, "full");
-    assert.deepEqual(timeless(again.metrics), timeless(full.metrics));
-    assert.deepEqual(counts(again, "misses"), { visible_sets: 0, visibility_audits: 0, searches: 0, bakes: 0 });
-    assert.equal(again.metrics.cache.visible_sets.hits, first.metrics.cache.visible_sets.misses);
-    assert.equal(again.metrics.cache.bakes.hits, first.metrics.cache.bakes.misses);
-    assert.match(again.out, /^cache: visible sets (\d+) of \1 reused, visibility audits 1 of 1 reused, direction searches (\d+) of \2 reused, bakes (\d+) of \3 reused$/m);
-  });
+test("the same job again makes nothing anew, on more threads", () => {
+  const again = withCache("again", city, budget, "cache", "--threads", "3");
+  expectSameBytes("again", "full");
+  assert.deepEqual(timeless(again.metrics), timeless(full.metrics));
+  assert.deepEqual(counts(again, "misses"), { visible_sets: 0, visibility_audits: 0, searches: 0, bakes: 0 });
+  assert.equal(again.metrics.cache.visible_sets.hits, first.metrics.cache.visible_sets.misses);
+  assert.equal(again.metrics.cache.bakes.hits, first.metrics.cache.bakes.misses);
+  assert.match(again.out, /^cache: visible sets (\d+) of \1 reused, visibility audits 1 of 1 reused, direction searches (\d+) of \2 reused, bakes (\d+) of \3 reused$/m);
+});
 
 test("a job of that cache may go where one without went: it is the same job", () => {
   withCache("full", city, budget, "cache");
@@ -133,7 +133,7 @@ test("--update leaves what the newest job needs, exactly", () => {
 });
 
 test("another budget takes over visible sets, bakes that it shares, and what searches found", () => {
-  const tighter = budgetBetween(0.2), looser = budgetBetween(0.6);
+  const tighter = budgetBetween(0.25), looser = budgetBetween(0.6);
   const cache = copied("budgets-cache");
   for (const [name, other] of [["tighter", tighter], ["looser", looser]]) {
     place(`${name}-plain`, city, other);
@@ -145,6 +145,18 @@ test("another budget takes over visible sets, bakes that it shares, and what sea
     assert.ok(cached.metrics.cache.searches.hits > 0);
     if (name === "looser") assert.equal(misses.searches, 0, JSON.stringify(cached.metrics.cache.searches));
   }
+});
+
+test("where levels of detail turn out to be in vain, the searches without them are kept, too", () => {
+  assert.ok(surveyed.lods.used, "there are levels to be in vain");
+  const loose = (3 * surveyed.survey.worst_bound_ms).toFixed(3), cache = copied("vain-cache");
+  place("vain-plain", city, loose);
+  const first = withCache("vain", city, loose, cache), again = withCache("vain", city, loose, cache);
+  expectSameBytes("vain", "vain-plain");
+  assert.match(first.metrics.left_out.find(({ stage }) => stage === "lods").reason, /no problem views without them/);
+  const { hits, misses } = first.metrics.cache.searches;
+  assert.ok(hits > 0 && misses > 0, "with levels all is known, without none");
+  assert.deepEqual([again.metrics.cache.searches.hits, again.metrics.cache.searches.misses], [hits + misses, 0]);
 });
 
 test("survey and sweep take part, to the same numbers", () => {

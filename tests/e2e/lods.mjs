@@ -73,8 +73,9 @@ test("put together with the scene's vertices, levels fill the bounds of their ob
   const scene = reader(city), levelFile = reader(join(placed.out, "lods.glb"));
   const nodesOf = new Map(scene.gltf.nodes.map((node) => [node.name, node]));
   let seen = 0;
-  for (const { object, levels } of placed.placement.lods.objects) {
+  for (const { object, world_from_object, levels } of placed.placement.lods.objects) {
     const { gltf_node, bounds } = placed.placement.scene.objects[object];
+    assert.equal(world_from_object, null, "the node says it");
     for (const { gltf_node: name, error } of levels) {
       const min = [Infinity, Infinity, Infinity], max = [-Infinity, -Infinity, -Infinity];
       for (const { indices, extras } of levelFile.gltf.meshes[levelFile.gltf.nodes.find((node) => node.name === name).mesh].primitives) {
@@ -114,10 +115,10 @@ test("verify states their image error, which is small", () => {
   assert.ok(image.lods_mean_flip > 0 && image.lods_mean_flip < 0.05, `${image.lods_mean_flip}`);
 });
 
-const tampered = (name, change) => {
+const tampered = (name, change, { out, placement: untouched } = placed) => {
   const copy = join(folder, name), file = join(copy, "lods.glb");
-  cpSync(placed.out, copy, { recursive: true });
-  const placement = structuredClone(placed.placement), glb = readFileSync(file);
+  cpSync(out, copy, { recursive: true });
+  const placement = structuredClone(untouched), glb = readFileSync(file);
   change(placement.lods, glb);
   placement.lods.asset.sha256 = createHash("sha256").update(glb).digest("hex");
   writeFileSync(join(copy, "placement.json"), JSON.stringify(placement));
@@ -150,6 +151,47 @@ test("a level shown from nearer, and one that lies farther off than stated, are 
     if (wide) glb.writeUInt32LE(far, at); else glb.writeUInt16LE(far, at);
   });
   assert.deepEqual(violations(otherTriangles), ["levels"]);
+});
+
+// No glTF has no node to stand under: vertices are the file's own, and placement.json says where they belong.
+test("of a scene that is no glTF, levels under their object's transform fill its bounds", () => {
+  const n = 48, lines = [], scene = join(folder, "balls.obj"), out = join(folder, "balls");
+  for (const [i, [x, y]] of [[0, 0], [3000, 0], [0, 4000]].entries()) {
+    lines.push(`o ball${i}`);
+    for (let a = 0; a <= n; ++a)
+      for (let b = 0; b < n; ++b) {
+        const down = (Math.PI * a) / n, round = (2 * Math.PI * b) / n, r = 100 * (i + 1);
+        lines.push(`v ${x + r * Math.sin(down) * Math.cos(round)} ${y + r * Math.sin(down) * Math.sin(round)} ${r * (1.3 - Math.cos(down))}`);
+      }
+    const at = (a, b) => 1 + i * (n + 1) * n + a * n + (b % n);
+    for (let a = 0; a < n; ++a) for (let b = 0; b < n; ++b) lines.push(`f ${at(a, b)} ${at(a, b + 1)} ${at(a + 1, b + 1)} ${at(a + 1, b)}`);
+  }
+  writeFileSync(scene, lines.join("\n"));
+  expectExit(0, "place", scene, ...smallJob, "--up", "z", "--unit", "cm", "--lods", "on", "--lods-error-px", "4", "--budget-ms", "1000", "--verify-views", "0", "-o", out);
+  const { placement } = resultOf(out), file = reader(join(out, "lods.glb"));
+  assert.ok(placement.lods.objects.length > 0);
+  for (const { object, world_from_object: m, levels } of placement.lods.objects) {
+    const { bounds } = placement.scene.objects[object];
+    for (const { gltf_node, error } of levels)
+      for (const { attributes, indices } of file.gltf.meshes[file.gltf.nodes.find((node) => node.name === gltf_node).mesh].primitives) {
+        const places = file.numbers(attributes.POSITION, 3), corners = [...file.numbers(indices, 1)];
+        for (const a of [0, 1, 2]) {
+          const along = corners.map((v) => m[a] * places[3 * v] + m[4 + a] * places[3 * v + 1] + m[8 + a] * places[3 * v + 2] + m[12 + a]);
+          assert.ok(Math.abs(Math.min(...along) - bounds.min[a]) <= error + 1e-3, `${gltf_node}: ${Math.min(...along)} against ${bounds.min}`);
+          assert.ok(Math.abs(Math.max(...along) - bounds.max[a]) <= error + 1e-3, `${gltf_node}: ${Math.max(...along)} against ${bounds.max}`);
+        }
+      }
+  }
+  expectExit(0, "check", out);
+  const moved = tampered("moved", (lods) => (lods.objects[0].world_from_object[12] += 1e-6), { out, placement });
+  for (const command of ["check", "verify"]) assert.match(expectExit(2, command, moved).err, /world_from_object of object \d+ differs from the scene's/);
+  // A vertex that is no number.
+  const { accessors, bufferViews, meshes } = file.gltf, { POSITION } = meshes[0].primitives[0].attributes;
+  const broken = tampered("no-number", (lods, glb) => {
+    const at = 20 + glb.readUInt32LE(12) + 8 + (bufferViews[accessors[POSITION].bufferView].byteOffset || 0) + (accessors[POSITION].byteOffset || 0);
+    glb.writeFloatLE(NaN, at);
+  }, { out, placement });
+  assert.match(expectExit(2, "check", broken).err, new RegExp(`lods\\.glb: accessors\\[${POSITION}\\]: element 0 is no finite number`));
 });
 
 test("another lods.glb than the one that was placed is refused", () => {

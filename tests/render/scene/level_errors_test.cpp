@@ -30,7 +30,7 @@ std::vector<std::string> faults(const Scene& scene) {
 }
 
 Surface in_world(const Scene& scene, std::uint32_t first_part, const Mat4& world_from_object) {
-  Surface surface = surface_of_parts(scene, first_part, 1);
+  Surface surface = surface_of_parts(scene, {first_part, 1});
   for (SurfacePoint& point : surface.points) point.place = Vec3(world_from_object * Vec4(point.place, 1.0));
   return surface;
 }

@@ -6,10 +6,14 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <limits>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "render/base/error.h"
 #include "render/scene/load.h"
+#include "render/scene/mesh_builder.h"
 #include "tests/render/scene/glb_maker.h"
 #include "tests/render/scene/level_meshes.h"
 #include "tests/render/scene/temporary_folder.h"
@@ -46,7 +50,8 @@ struct Loaded {
   /// The scene as loaded, with the levels that the file of this one's holds.
   [[nodiscard]] Scene read_back() const {
     Scene read = before;
-    read_levels(stated_levels(scene), write_levels(scene).glb, read);
+    const LevelFile file = write_levels(scene);
+    EXPECT_EQ(read_levels(stated_levels(scene), file.glb, read), file.buffer_bytes);
     return read;
   }
   Scene scene, before;
@@ -128,15 +133,108 @@ TEST(LevelFile, PiecesOfASplitObjectReferToTheWholePrimitive) {
   expect_same_levels(loaded.scene, loaded.read_back());
 }
 
-// No glTF: vertices of its own, materials by name.
-TEST(LevelFile, OtherScenesGetVerticesOfTheirOwn) {
-  Loaded loaded(two_parts());
+// Of a piece with a part that is not simplified a viewer must not draw all of the primitive that the piece is a part of.
+TEST(LevelFile, APiecesUntouchedPartSaysWhichTrianglesItIs) {
+  test::GlbMaker maker;
+  MeshBuilder box;
+  box.box({-1, -1, -1}, {1, 1, 1});
+  const json ball = primitive_of(maker, test::ball(40)), plain = primitive_of(maker, box.finish("box"));
+  Loaded loaded(gltf({ball, plain}, maker), 700);
+  loaded.make_levels();
+  const json file = json_of(write_levels(loaded.scene).glb);
+  std::set<std::string> named;
+  for (const StatedLevel& level : stated_levels(loaded.scene)) named.insert(level.gltf_node);
+  std::map<std::size_t, std::vector<std::uint64_t>> triangles;  // of the box's primitive, by node
+  for (const json& node : file["nodes"]) {
+    ASSERT_TRUE(named.contains(node["name"]));
+    for (const json& primitive : file["meshes"][node["mesh"].get<std::size_t>()]["primitives"]) {
+      ASSERT_TRUE(primitive.contains("indices")) << node << " draws the whole primitive " << primitive["extras"];
+      if (primitive["extras"]["scene_primitive"] != 1) continue;
+      const std::uint64_t corners = file["accessors"][primitive["indices"].get<std::size_t>()]["count"];
+      EXPECT_LT(corners, 36U) << "no piece has the whole box";
+      triangles[node["mesh"].get<std::size_t>()].push_back(corners / 3);
+    }
+  }
+  EXPECT_FALSE(triangles.empty());
+  const Scene read = loaded.read_back();
+  expect_same_levels(loaded.scene, read);
+  double bytes = 0.0;
+  std::set<std::uint32_t> counted;
+  for (const Object& object : loaded.scene.objects)
+    for (const ObjectLevel& level : object.levels)
+      for (std::uint32_t p = level.first_part; p < level.first_part + level.part_count; ++p)
+        if (counted.insert(loaded.scene.parts[p].mesh).second) bytes += level_bytes(loaded.scene, loaded.scene.parts[p]);
+  EXPECT_NEAR(static_cast<double>(write_levels(loaded.scene).buffer_bytes), bytes, 4.0);
+}
+
+/// As another format has it: no meshes to refer to.
+void forget_the_file(Loaded& loaded) {
   for (Scene* scene : {&loaded.scene, &loaded.before}) {
     for (Part& part : scene->parts) part.gltf_mesh = -1;
     scene->textures.push_back({"bark.png", 1, 1, {0, 0, 0, 255}});
     scene->materials[scene->parts[0].material].texture = 0;
     scene->materials[scene->parts[0].material].name = "bark";
   }
+}
+
+std::string refusal_of(const std::vector<StatedLevel>& levels, const std::string& bytes, Scene scene) {
+  try {
+    (void)read_levels(levels, bytes, scene);
+  } catch (const Failure& failure) {
+    EXPECT_EQ(failure.word(), ErrorWord::kFileBroken);
+    return failure.what();
+  }
+  return "";
+}
+
+/// The GLB with another JSON.
+std::string with_json(const std::string& glb, const json& other) {
+  std::uint32_t length = 0;
+  std::memcpy(&length, glb.data() + 12, 4);
+  std::string text = other.dump();
+  text.resize((text.size() + 3) / 4 * 4, ' ');
+  const std::string rest = glb.substr(20 + length);
+  return glb.substr(0, 8) + test::GlbMaker::word(20 + text.size() + rest.size()) + test::GlbMaker::word(text.size()) + "JSON" + text + rest;
+}
+
+TEST(LevelFile, ACoordinateThatIsNoNumberIsRefusedByItsPlace) {
+  Loaded loaded(two_parts());
+  forget_the_file(loaded);
+  loaded.make_levels();
+  const std::string glb = write_levels(loaded.scene).glb;
+  const json file = json_of(glb);
+  ASSERT_EQ(refusal_of(stated_levels(loaded.scene), glb, loaded.before), "");
+  const json& attributes = file["meshes"][0]["primitives"][0]["attributes"];
+  for (const char* name : {"POSITION", "NORMAL", "TEXCOORD_0"})
+    for (const float wrong : {std::numeric_limits<float>::quiet_NaN(), -std::numeric_limits<float>::infinity()}) {
+      const std::size_t id = attributes[name];
+      const json &accessor = file["accessors"][id], &view = file["bufferViews"][accessor["bufferView"].get<std::size_t>()];
+      std::string broken = glb;
+      std::memcpy(broken.data() + glb.find("BIN") + 4 + view["byteOffset"].get<std::size_t>() + accessor["byteOffset"].get<std::size_t>() +
+                      2 * view["byteStride"].get<std::size_t>(),
+                  &wrong, sizeof wrong);
+      EXPECT_EQ(refusal_of(stated_levels(loaded.scene), broken, loaded.before),
+                "lods.glb: accessors[" + std::to_string(id) + "]: element 2 is no finite number");
+    }
+}
+
+// Whether vertices are the file's own is the scene's to say: a material in the primitive of a glTF scene changes nothing.
+TEST(LevelFile, WhoseVerticesTheyAreDoesNotDependOnAMaterial) {
+  Loaded loaded(two_parts());
+  loaded.make_levels();
+  const std::string glb = write_levels(loaded.scene).glb;
+  json file = json_of(glb);
+  for (json& mesh : file["meshes"])
+    for (json& primitive : mesh["primitives"]) primitive["material"] = 0;
+  Scene read = loaded.before;
+  (void)read_levels(stated_levels(loaded.scene), with_json(glb, file), read);
+  expect_same_levels(loaded.scene, read);
+}
+
+// No glTF: vertices of its own, materials by name.
+TEST(LevelFile, OtherScenesGetVerticesOfTheirOwn) {
+  Loaded loaded(two_parts());
+  forget_the_file(loaded);
   loaded.make_levels();
   const json gltf = json_of(write_levels(loaded.scene).glb);
   EXPECT_EQ(gltf["materials"][0]["name"], "bark");
@@ -170,15 +268,8 @@ TEST(LevelFile, WhatDoesNotFitTheSceneIsRefused) {
   loaded.make_levels();
   const std::string glb = write_levels(loaded.scene).glb;
   const std::vector<StatedLevel> stated = stated_levels(loaded.scene);
-  const auto refusal = [&](std::vector<StatedLevel> levels, std::string bytes) -> std::string {
-    Scene scene = loaded.before;
-    try {
-      read_levels(levels, bytes, scene);
-    } catch (const Failure& failure) {
-      EXPECT_EQ(failure.word(), ErrorWord::kFileBroken);
-      return failure.what();
-    }
-    return "";
+  const auto refusal = [&](const std::vector<StatedLevel>& levels, const std::string& bytes) {
+    return refusal_of(levels, bytes, loaded.before);
   };
   const auto replaced = [&](const std::string& from, const std::string& to) {
     std::string bytes = glb;

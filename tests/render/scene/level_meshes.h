@@ -34,10 +34,12 @@ inline Mesh sheet(double from = 0.0, int n = 20) {
   return mesh;
 }
 
-/// One object for each (mesh, place), of one part.
+/// One object for each (mesh, place), of one part, with a texture.
 inline Scene scene_of_placed(std::vector<Mesh> meshes, const std::vector<std::pair<std::uint32_t, Mat4>>& places) {
   Scene scene;
+  scene.textures.resize(1);
   scene.materials.resize(1);
+  scene.materials[0].texture = 0;
   scene.meshes = std::move(meshes);
   for (std::uint32_t m = 0; m < scene.meshes.size(); ++m) scene.parts.push_back({m, 0});
   for (const auto& [mesh, place] : places) {

@@ -12,7 +12,7 @@
 #include "render/scene/load.h"
 #include "render/scene/mesh_builder.h"
 #include "render/scene/simplify_mesh.h"
-#include "render/scene/surface_deviation.h"
+#include "render/scene/textured_surface.h"
 #include "tests/render/scene/glb_maker.h"
 #include "tests/render/scene/level_meshes.h"
 #include "tests/render/scene/temporary_folder.h"
@@ -41,9 +41,7 @@ Mesh flat_shaded(const Mesh& mesh) {
 }
 
 double measured_error(const Mesh& a, const Mesh& b) {
-  const double scale = metres_per_uv(a);
-  const Surface sa = surface_of(a, scale), sb = surface_of(b, scale);
-  return std::max(deviation(sa, SurfaceTree(sb), {}).found_m, deviation(sb, SurfaceTree(sa), {}).found_m);
+  return TexturedSurface(a, true).deviation_of(b, {}, 1.0).found_m;
 }
 
 // One object of `mesh` for each transform.
@@ -239,6 +237,36 @@ TEST(AuthoredLevels, WithoutCoverageGoByTheirMeasuredError) {
   ASSERT_FALSE(object.levels.empty());
   EXPECT_EQ(object.levels.back().triangle_count, 2U);  // all lie in the same plane: the simplest may be shown from next to it
   EXPECT_LT(object.levels.back().least_distance_m, 1e-3);
+}
+
+// Once for all instances, however they are placed.
+TEST(AuthoredLevels, AreMeasuredOnce) {
+  test::GlbMaker one = strips(), many = strips();
+  for (int i = 0; i < 5; ++i) {
+    test::GlbMaker::Json node = many.json["nodes"][0];
+    node["translation"] = {0, 0, 3 * i + 3};
+    many.json["scenes"][0]["nodes"].push_back(many.json["nodes"].size());
+    many.json["nodes"].push_back(node);
+    for (int k = 1; k < 3; ++k) {  // a node has one place
+      test::GlbMaker::Json level = many.json["nodes"][k];
+      level["translation"] = node["translation"];
+      many.json["nodes"].push_back(level);
+    }
+    const std::size_t last = many.json["nodes"].size();
+    many.json["nodes"][last - 3]["extensions"]["MSFT_lod"]["ids"] = {last - 2, last - 1};
+  }
+  Scene first = loaded(one), all = loaded(many);
+  ASSERT_EQ(all.objects.size(), 6U);
+  LevelOptions options = kLevelOptions;
+  const LevelSummary of_one = add_object_levels(first, options, WorkBudget());
+  options.threads = 3;
+  const LevelSummary of_all = add_object_levels(all, options, WorkBudget());
+  EXPECT_GT(of_one.pieces, 0U);
+  EXPECT_EQ(of_all.pieces, of_one.pieces);
+  for (const Object& object : all.objects) {
+    ASSERT_EQ(object.levels.size(), first.objects[0].levels.size());
+    EXPECT_NEAR(object.levels[0].error_m, first.objects[0].levels[0].error_m, 1e-12);
+  }
 }
 
 TEST(AuthoredLevels, ElsewhereAreDroppedAndNoted) {

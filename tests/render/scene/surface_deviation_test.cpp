@@ -4,8 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <cmath>
 
+#include "render/base/error.h"
 #include "render/base/rng.h"
 #include "render/scene/mesh_builder.h"
 
@@ -86,8 +88,7 @@ TEST(SurfaceDeviation, CountsTheTextureSlip) {
   const Mesh mesh = wavy(8, 0.1);
   Mesh slipped = mesh;
   for (glm::vec2& uv : slipped.uvs) uv.x += 0.2F;
-  const double scale = metres_per_uv(mesh);
-  EXPECT_NEAR(scale, 1.0, 0.3);  // one repeat over about a metre
+  const double scale = 1.2;
   EXPECT_NEAR(deviation(surface_of(mesh, scale), SurfaceTree(surface_of(slipped, scale)), {}).found_m, 0.2 * scale, 0.01);
   EXPECT_NEAR(deviation(surface_of(mesh, 0.0), SurfaceTree(surface_of(slipped, 0.0)), {}).found_m, 0.0, 1e-6);
 }
@@ -108,6 +109,42 @@ TEST(SurfaceDeviation, BoundHoldsWhateverTheWorkAndTightens) {
     }
     EXPECT_LE(before, 1.25 * sampled * 1.1);
   }
+}
+
+TEST(SurfaceDeviation, OfWhatIsNoNumberIsInfinite) {
+  const Mesh mesh = wavy(4, 0.1);
+  const Surface sound = surface_of(mesh, 1.0);
+  for (const float wrong : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
+    Mesh broken = mesh, broken_uv = mesh;
+    broken.positions[mesh.indices[4]].y = wrong;
+    broken_uv.uvs[mesh.indices[4]].x = wrong;
+    for (const Surface& surface : {surface_of(broken, 1.0), surface_of(broken_uv, 1.0)}) {
+      EXPECT_TRUE(std::isinf(deviation(sound, SurfaceTree(surface), {}).bound_m));
+      EXPECT_TRUE(std::isinf(deviation(surface, SurfaceTree(sound), {}).bound_m));
+      EXPECT_TRUE(std::isinf(ComparedSurface(sound).deviation_both_ways(ComparedSurface(surface), {}).bound_m));
+      EXPECT_TRUE(std::isinf(ComparedSurface(surface).deviation_both_ways(ComparedSurface(sound), {}).bound_m));
+    }
+  }
+}
+
+TEST(SurfaceDeviation, BothWaysIsTheGreaterOneAndItselfIsNothing) {
+  const Surface whole = surface_of(wavy(8, 0.1), 0.0);
+  Surface half = whole;
+  half.triangles.resize(whole.triangles.size() / 2);
+  EXPECT_EQ(ComparedSurface(half).deviation_both_ways(ComparedSurface(half), {}).bound_m, 0.0);
+  const double missing = deviation(whole, SurfaceTree(half), {}).found_m;
+  EXPECT_GT(missing, 0.1);
+  EXPECT_NEAR(ComparedSurface(half).deviation_both_ways(ComparedSurface(whole), {}).found_m, missing, 1e-12);
+  EXPECT_NEAR(ComparedSurface(whole).deviation_both_ways(ComparedSurface(half), {}).found_m, missing, 1e-12);
+}
+
+TEST(SurfaceDeviation, StopsWhenAsked) {
+  const std::atomic<bool> stop{true};
+  const WorkBudget budget(&stop);
+  DeviationLimits limits;
+  limits.budget = &budget;
+  const Surface surface = surface_of(wavy(4, 0.1), 0.0);
+  EXPECT_THROW((void)deviation(surface, SurfaceTree(surface), limits), Failure);
 }
 
 TEST(SurfaceDeviation, FromNothingAndToNothing) {

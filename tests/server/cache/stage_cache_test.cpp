@@ -89,6 +89,27 @@ TEST_F(StageCaches, AnEntryCutShortAnywhereIsAbsentAndReplaced) {
   EXPECT_EQ(recall(cache, 1), "payload");
 }
 
+// A file of 4 TB that takes up none: whether its header says so, too, or something else, nobody asks for as much memory.
+TEST_F(StageCaches, AnEntryOfAHugeSizeIsAbsentAndReplaced) {
+  StageCache cache = open();
+  cache.keep(kStage, inputs(1), "payload");
+  const fs::path file = cache.file_of(kStage, inputs(1));
+  const std::string whole = read_file(file);
+  constexpr std::uint64_t kHuge = std::uint64_t{1} << 42;
+  for (const bool consistent : {false, true}) {
+    std::string header = whole.substr(0, whole.size() - 7);
+    const std::uint64_t claimed = kHuge - header.size();
+    if (consistent)
+      header.replace(header.size() - sizeof(Fingerprint) - sizeof claimed, sizeof claimed, reinterpret_cast<const char*>(&claimed),
+                     sizeof claimed);
+    write(file, header);
+    fs::resize_file(file, kHuge);
+    EXPECT_EQ(recall(cache, 1), std::nullopt);
+    cache.keep(kStage, inputs(1), "payload");
+    EXPECT_EQ(recall(cache, 1), "payload");
+  }
+}
+
 // In the header every bit, the layout's version among them; in the payload some.
 TEST_F(StageCaches, AnEntryWithAFlippedBitIsAbsent) {
   StageCache cache = open();

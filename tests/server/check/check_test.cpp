@@ -135,7 +135,7 @@ const std::vector<Tampering> kTamperings = {
     {Violation::kNotEnclosed, kCpv, "not_enclosed", stand_for_the_other_cell},
     {Violation::kLevels, kTree, "levels",
      [](Checked& w) {
-       w.placement.levels = {{kTree, w.scene.objects[kTree].bounds, {30.0}}};
+       w.placement.levels = {{kTree, {Vec3(0.0), Vec3(1.0)}, {30.0}}};
      }},
     {Violation::kMissingRegion, 0, "missing_region", [](Checked& w) { w.placement.cpvs.erase(w.placement.cpvs.begin()); }},
 };
@@ -215,14 +215,14 @@ TEST(Check, LevelsOfDetailCountAndAreHeldAgainstTheScenes) {
   for (auto& one : world.placement.cpvs) one.bound_before_ms -= 0.5 * kTree_ms;
   EXPECT_THAT(sentences(world.check()), testing::IsEmpty());
 
-  world.placement.levels[0].least_distance_m[0] = 10.0;
-  EXPECT_THAT(sentences(world.check()), testing::ElementsAre(testing::StartsWith("levels: object 1: level 1 is shown from 10")));
-  world.placement.levels[0].least_distance_m[0] = 20.0;
+  tree.levels[0].least_distance_m = 1e-3;
+  EXPECT_THAT(sentences(world.check()), testing::Contains(testing::StartsWith("levels: object 1: level 1: is shown from 0.001")));
+  tree.levels[0].least_distance_m = 20.0;
   tree.levels[0].error_m = 0.01;
   EXPECT_THAT(sentences(world.check()), testing::ElementsAre(testing::StartsWith("levels: object 1: level 1: its surface lies within")));
   tree.levels[0].error_m = 10.0;
-  world.placement.levels.clear();
-  EXPECT_THAT(sentences(world.check()), testing::ElementsAre(testing::StartsWith("levels: object 1: 0 levels of detail, recomputed 1")));
+  world.placement.levels[0].bounds.max.x += 1e-9;
+  EXPECT_THAT(sentences(world.check()), testing::ElementsAre("levels: object 1: bounds differ from the scene's"));
 }
 
 TEST(Check, FindingsDoNotDependOnThreads) {

@@ -73,6 +73,7 @@ TEST(PlacementJson, RoundTripKeepsEveryValue) {
 
 TEST(PlacementJson, LevelsOfDetailAreStatedByObject) {
   Scene scene = two_object_scene();
+  for (int k = 0; k < 16; ++k) scene.objects[1].world_from_object[k / 4][k % 4] = 1.0 / (k + 3.0);
   scene.objects[1].levels = {{4, 1, 70, 0.125, -1.0, 12.5}, {5, 1, 9, -1.0, 0.1, 1.0 / 3.0 + 20.0}};
   PlacementFile file = sample_file();
   file.lods_sha256 = "ef";
@@ -86,9 +87,13 @@ TEST(PlacementJson, LevelsOfDetailAreStatedByObject) {
   ASSERT_EQ(read.placement.levels.size(), 1U);
   EXPECT_EQ(read.placement.levels[0].object, 1U);
   EXPECT_EQ(read.placement.levels[0].bounds, scene.objects[1].bounds);
+  EXPECT_EQ(written["lods"]["objects"][0]["world_from_object"][13], 1.0 / 16.0) << "column major: the second of the last column";
+  EXPECT_EQ(read.placement.levels[0].world_from_object, scene.objects[1].world_from_object);
   EXPECT_EQ(read.placement.levels[0].least_distance_m, (std::vector<double>{12.5, 1.0 / 3.0 + 20.0}));
-  for (const auto& [pointer, value] : std::vector<std::pair<std::string, json>>{
-           {"/lods/objects/0/object", 2}, {"/lods/objects/0/levels/1/least_distance", 3.0}, {"/lods/asset/sha256", 3}}) {
+  for (const auto& [pointer, value] : std::vector<std::pair<std::string, json>>{{"/lods/objects/0/object", 2},
+                                                                                {"/lods/objects/0/levels/1/least_distance", 3.0},
+                                                                                {"/lods/objects/0/world_from_object", {1, 0, 0}},
+                                                                                {"/lods/asset/sha256", 3}}) {
     json bad = written;
     bad[json::json_pointer(pointer)] = value;
     EXPECT_THROW((void)placement_from_json(bad, "p"), Failure) << pointer;
