@@ -38,7 +38,9 @@ async function show(): Promise<void> {
   try {
     await VIEWS[route.view](host, route, signal);
   } catch (error) {
-    if (!signal.aborted) host.append(failureBox(error));
+    if (signal.aborted) return;
+    if (host.querySelector("h1") === null) host.replaceChildren(element("h1", {}, "This cannot be shown"));
+    host.append(failureBox(error));
   }
 }
 
