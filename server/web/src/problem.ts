@@ -7,11 +7,14 @@ export function problemBox(problem: Problem): HTMLElement {
   const fields = (problem.errors ?? []).map(({ pointer, detail }) => element("li", {}, pointer !== "" && element("code", {}, pointer), pointer !== "" ? `: ${detail}` : detail));
   return element("div", { class: "problem", role: "alert" },
     element("strong", {}, problem.title),
-    problem.detail !== undefined && problem.detail !== problem.title && element("p", {}, problem.detail),
+    problem.detail !== undefined && !repeats(problem) && element("p", {}, problem.detail),
     fields.length > 0 && element("ul", {}, ...fields),
     problem.word !== undefined && element("p", { class: "soft" }, "error word ", element("code", {}, problem.word)),
     problem.status === 401 && tokenForm());
 }
+
+/// The detail may say no more than the title, or than the only field that is wrong.
+const repeats = ({ title, detail, errors = [] }: Problem) => detail === title || errors.some((error) => detail === `${error.pointer}: ${error.detail}`);
 
 /// Any error, unless it only says that the view has gone.
 export function failureBox(error: unknown): HTMLElement {

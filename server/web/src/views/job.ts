@@ -115,6 +115,7 @@ class JobPage {
   }
 
   private apply({ state, stage, fraction }: Progress): void {
+    if (state !== undefined && isFinal(state)) return; // files and outcome come with the document
     this.job = { ...this.job, ...(state && { state }), ...(stage !== undefined && { stage }), ...(fraction !== undefined && { fraction }), started: this.job.started ?? (state === "running" ? new Date().toISOString() : null) };
     this.show();
   }

@@ -98,29 +98,32 @@ class Builder {
   }
 
   private addWhole(node: SceneNode, id: number): void {
-    const own: Form = node.parts.map((part) => part.geometry);
-    const meshes = node.parts.map((part) => this.mesh(part, part.geometry, node.worldFromNode));
-    const levels = (this.levelsOf.get(id) ?? []).map((name) => this.levelForm(name, node));
-    let coarsest = own;
-    this.models[id] = { meshes, forms: [own, ...levels.map((form) => (coarsest = form ?? coarsest))] };
+    this.models[id] = this.model(node, id, node.parts);
   }
 
-  /// Null where the level is not made of the node's own mesh.
-  private levelForm(name: string, node: SceneNode): Form | null {
-    const key = `${name} of mesh ${node.mesh}`;
+  private model(node: SceneNode, id: number, parts: readonly ScenePart[]): ObjectModel {
+    const own: Form = parts.map((part) => part.geometry);
+    let coarsest = own;
+    const levels = (this.levelsOf.get(id) ?? []).map((name) => (coarsest = this.levelForm(name, node.mesh, parts) ?? coarsest));
+    return { meshes: parts.map((part) => this.mesh(part, part.geometry, node.worldFromNode)), forms: [own, ...levels] };
+  }
+
+  /// Null where the level is not made of the object's own mesh.
+  private levelForm(name: string, mesh: number, parts: readonly ScenePart[]): Form | null {
+    const key = `${name} of mesh ${mesh}`;
     const known = this.levelForms.get(key);
     if (known !== undefined) return known;
-    const form = this.readLevel(name, node);
+    const form = this.readLevel(name, mesh, parts);
     this.levelForms.set(key, form);
     return form;
   }
 
-  private readLevel(name: string, node: SceneNode): Form | null {
+  private readLevel(name: string, mesh: number, parts: readonly ScenePart[]): Form | null {
     const levelNode = this.levelNodes.get(name);
     if (this.lods === null || levelNode === undefined) return null;
     const { primitives } = this.lods.json.meshes![this.lods.json.nodes![levelNode]!.mesh!]!;
-    if (primitives.some((primitive) => primitive.extras?.scene_mesh !== node.mesh)) return null;
-    return node.parts.map((part) => {
+    if (primitives.some((primitive) => primitive.extras?.scene_mesh !== mesh)) return null;
+    return parts.map((part) => {
       const primitive = primitives.find((candidate) => candidate.extras?.scene_primitive === part.primitive);
       if (primitive === undefined) return null;
       return primitive.indices === undefined ? part.geometry : withTriangles(part.geometry, readIndices(this.lods!, primitive.indices));
@@ -133,11 +136,7 @@ class Builder {
       const piece = pieces[k];
       if (piece === undefined || pieces.length !== count) return;
       const parts = piece.map(({ part, corners }) => ({ ...node.parts[part]!, geometry: withTriangles(node.parts[part]!.geometry, corners) }));
-      const form: Form = parts.map((part) => part.geometry);
-      const usesPiece = piece.reduce((box, { part, corners }) => box.union(cornerBounds(node.parts[part]!.geometry, corners, node.worldFromNode)), new THREE.Box3());
-      if (!this.same(boxOf(this.placement.scene.objects[first + k]!), usesPiece)) return;
-      const levels = this.levelsOf.get(first + k) ?? [];
-      this.models[first + k] = { meshes: parts.map((part) => this.mesh(part, part.geometry, node.worldFromNode)), forms: [form, ...levels.map(() => form)] };
+      if (this.same(boxOf(this.placement.scene.objects[first + k]!), boundsOf(parts, node.worldFromNode))) this.models[first + k] = this.model(node, first + k, parts);
     }
   }
 
