@@ -208,7 +208,7 @@ class HeatMap {
     const range = (low: number, high: number) => `${significant(low, 4)} \u2026 ${significant(high, 4)}`;
     const place = (cell: HeatCell) => {
       const link = this.link(cell);
-      return link === null ? "" : element("a", { href: link, "aria-label": `Walk to x ${significant(cell.x0, 4)}, z ${significant(cell.z0, 4)}` }, "walk there");
+      return link === null ? "" : element("a", { href: link, "aria-label": `walk there: x ${significant(cell.x0, 4)}, z ${significant(cell.z0, 4)}` }, "walk there");
     };
     const columns = [
       { title: "x from\u2026to, m", cell: (cell: HeatCell) => range(cell.x0, cell.x1) }, { title: "z from\u2026to, m", cell: (cell: HeatCell) => range(cell.z0, cell.z1) },

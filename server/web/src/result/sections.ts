@@ -94,7 +94,7 @@ export function worstViews(metrics: Metrics, walkId: string | null, report: stri
   const columns = [
     { title: "view", cell: (view: WorstView) => view.name }, { title: "position, m", cell: position }, { title: "before", number: true, cell: (view: WorstView) => milliseconds(view.before) },
     { title: "with impostors", number: true, cell: (view: WorstView) => milliseconds(view.after) }, { title: "image error (FLIP)", number: true, cell: (view: WorstView) => significant(view.flip, 2) },
-    ...(walkId === null ? [] : [{ title: "", cell: (view: WorstView) => element("a", { href: walkAddress(walkId, view.position, view.direction), "aria-label": `Walk to ${position(view)}` }, "walk there") }]),
+    ...(walkId === null ? [] : [{ title: "", cell: (view: WorstView) => element("a", { href: walkAddress(walkId, view.position, view.direction), "aria-label": `walk there: ${position(view)}` }, "walk there") }]),
   ];
   const lead = walkId === null ? "" : "In the walk, the key I shows each view with and without its impostors.";
   return section("views", "Worst views", lead, table(columns, views, "Worst views"), report !== null && element("p", { class: "soft" }, "Side by side, with their differences: ", element("a", { href: report }, "report.html"), "."));
