@@ -49,6 +49,9 @@ export interface Prediction { readonly valid: boolean; readonly predicted?: { re
 
 export const isFinal = (state: JobState) => state === "succeeded" || state === "failed" || state === "cancelled";
 
+/// Whether the page can walk through its result: browsers draw GLB alone.
+export const isWalkable = (job: Job) => job.state === "succeeded" && job.kind === "place" && job.scene !== null && /\.glb$/i.test(job.scene.name);
+
 /// A problem document (RFC 9457), or what a failure without one amounts to.
 export class ProblemError extends Error {
   constructor(readonly problem: Problem) {

@@ -1,6 +1,6 @@
 // One job: how far it is, what it was asked, what went wrong, and the files that it made.
 
-import { cancelJob, deleteJob, getBlob, getJob, hasToken, isFinal, watchJob, type Artifact, type Job, type Progress } from "../api";
+import { cancelJob, deleteJob, getBlob, getJob, hasToken, isFinal, isWalkable, watchJob, type Artifact, type Job, type Progress } from "../api";
 import { button, element, folded, replaceIfChanged, section, table } from "../elements";
 import { KIND_TEXT, progressElement, stageText, stateElement, stateWord, tookText } from "../job_text";
 import { failureBox, problemBox } from "../problem";
@@ -84,7 +84,7 @@ class JobPage {
     const { job } = this;
     if (!isFinal(job.state)) return [button("Cancel this job", () => void this.act(async () => (this.job = await cancelJob(job.id))))];
     const result = job.state === "succeeded" && [element("a", { class: "button primary", href: jobAddress(job.id, "result") }, "Result")];
-    const walk = job.state === "succeeded" && job.kind === "place" && [element("a", { class: "button", href: jobAddress(job.id, "walk") }, "Walk through it")];
+    const walk = isWalkable(job) && [element("a", { class: "button", href: jobAddress(job.id, "walk") }, "Walk through it")];
     const remove = button("Delete job and files", () => confirm("Delete this job and its files? This cannot be undone.") && void this.act(async () => {
       await deleteJob(job.id);
       location.hash = "#/";

@@ -1,6 +1,6 @@
 // The list of jobs, kept fresh by asking again.
 
-import { JOB_KINDS, listJobs, type Job } from "../api";
+import { isWalkable, JOB_KINDS, listJobs, type Job } from "../api";
 import { button, element, replaceIfChanged, table, type Column } from "../elements";
 import { progressElement, stageText, stateElement, tookText } from "../job_text";
 import { failureBox } from "../problem";
@@ -12,7 +12,7 @@ const REFRESH_MS = 2000;
 function actions(job: Job): HTMLElement {
   const link = (view: "result" | "walk", text: string) => element("a", { href: jobAddress(job.id, view), "aria-label": `${text} of ${job.label || job.id}` }, text);
   if (job.state !== "succeeded" || job.artifacts.length === 0) return element("span");
-  return element("span", {}, link("result", "Result"), job.kind === "place" && " \u00b7 ", job.kind === "place" && link("walk", "Walk"));
+  return element("span", {}, link("result", "Result"), isWalkable(job) && " \u00b7 ", isWalkable(job) && link("walk", "Walk"));
 }
 
 function progressCell(job: Job): HTMLElement {

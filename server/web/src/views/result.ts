@@ -1,6 +1,6 @@
 // A finished job's result: how it went, where the scene is slow, what it costs, and ways into the walk.
 
-import { artifactOf, getJob, getText, isFinal, type Job } from "../api";
+import { artifactOf, getJob, getText, isFinal, isWalkable, type Job } from "../api";
 import { element, folded, section } from "../elements";
 import { stateWord } from "../job_text";
 import { problemBox } from "../problem";
@@ -33,12 +33,12 @@ function context(metrics: Metrics): string {
 function ways(job: Job): HTMLElement {
   const report = artifactOf(job, "report.html");
   return element("div", { class: "actions" },
-    job.kind === "place" && element("a", { class: "button primary", href: jobAddress(job.id, "walk") }, "Walk through it"),
+    isWalkable(job) && element("a", { class: "button primary", href: jobAddress(job.id, "walk") }, "Walk through it"),
     report !== undefined && element("a", { class: "button", href: report.href }, "The whole report"), element("a", { class: "button", href: jobAddress(job.id) }, "Job and files"));
 }
 
 function numbers(job: Job, metrics: Metrics, placement: Placement | null, signal: AbortSignal): (HTMLElement | null)[] {
-  const walkId = placement === null ? null : job.id;
+  const walkId = placement !== null && isWalkable(job) ? job.id : null;
   return [
     element("p", { class: "context" }, context(metrics)), verdict(metrics), tiles(metrics), ways(job), heatMap({ metrics, placement, walkId }), frameTimes(metrics, signal),
     worstViews(metrics, walkId, artifactOf(job, "report.html")?.href ?? null), unsolved(metrics), causes(metrics), memory(metrics, placement, signal),

@@ -28,7 +28,6 @@ export class Stage {
     this.scene.matrixWorldAutoUpdate = false;
   }
 
-  /// `side` of the canvas's longer edge in device pixels.
   resize(width: number, height: number): void {
     this.renderer.setSize(width, height, false);
   }
@@ -80,12 +79,6 @@ export class Stage {
     });
     for (const id of content.impostors) for (const mesh of this.impostors.meshesOf(id)) add(mesh.geometry, mesh.matrixWorld);
     return { draws, triangles };
-  }
-
-  /// Forces what is drawn to the device, so that a frame can be timed.
-  finish(): void {
-    const gl = this.renderer.getContext();
-    gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));
   }
 
   dispose(): void {
