@@ -35,6 +35,7 @@ export interface Job {
   readonly started: string | null;
   readonly finished: string | null;
   readonly attempts: number;
+  readonly cancel_asked?: boolean;
   readonly best_so_far: Record<string, unknown> | null;
   readonly error: Problem | null;
   readonly request: JobRequest;

@@ -1,5 +1,7 @@
 // The parts of a result: from a job's numbers to elements, or nothing where the job has no such numbers.
 
+import type { Artifact } from "../api";
+import { artifactLink } from "../artifact_link";
 import { lineChart, type Series } from "../charts";
 import { element, section, table } from "../elements";
 import { walkAddress } from "../router";
@@ -84,7 +86,7 @@ interface WorstView { readonly name: string; readonly position: Triple; readonly
 
 const measured = (frame: VerifiedFrame, when: "before" | "after") => frame[`${when}_ms`] ?? frame[`estimated_${when}_ms`];
 
-export function worstViews(metrics: Metrics, walkId: string | null, report: string | null): HTMLElement | null {
+export function worstViews(metrics: Metrics, walkId: string | null, report: Artifact | undefined): HTMLElement | null {
   const surveyed = (metrics.survey?.worst_views ?? []).slice(0, 8).map((view, i): WorstView => ({ ...view, name: `slowest of the survey, ${i + 1}`, before: view.frame_ms, after: null, flip: null }));
   const verified = [...(metrics.verify?.frames ?? [])].sort((a, b) => (measured(b, "after") ?? 0) - (measured(a, "after") ?? 0)).slice(0, 8)
     .map((frame): WorstView => ({ ...frame, name: `drawn with impostors (${frame.origin})`, before: measured(frame, "before"), after: measured(frame, "after"), flip: frame.mean_flip }));
@@ -97,7 +99,7 @@ export function worstViews(metrics: Metrics, walkId: string | null, report: stri
     ...(walkId === null ? [] : [{ title: "", cell: (view: WorstView) => element("a", { href: walkAddress(walkId, view.position, view.direction), "aria-label": `walk there: ${position(view)}` }, "walk there") }]),
   ];
   const lead = walkId === null ? "" : "In the walk, the key I shows each view with and without its impostors.";
-  return section("views", "Worst views", lead, table(columns, views, "Worst views"), report !== null && element("p", { class: "soft" }, "Side by side, with their differences: ", element("a", { href: report }, "report.html"), "."));
+  return section("views", "Worst views", lead, table(columns, views, "Worst views"), report !== undefined && element("p", { class: "soft" }, "Side by side, with their differences: ", artifactLink(report, "report.html"), "."));
 }
 
 export function unsolved(metrics: Metrics): HTMLElement | null {

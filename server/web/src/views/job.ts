@@ -1,6 +1,7 @@
 // One job: how far it is, what it was asked, what went wrong, and the files that it made.
 
-import { cancelJob, deleteJob, getBlob, getJob, hasToken, isFinal, isWalkable, watchJob, type Artifact, type Job, type Progress } from "../api";
+import { cancelJob, deleteJob, getJob, isFinal, isWalkable, watchJob, type Artifact, type Job, type Progress } from "../api";
+import { artifactLink } from "../artifact_link";
 import { button, element, folded, replaceIfChanged, section, table } from "../elements";
 import { KIND_TEXT, progressElement, stageText, stateElement, stateWord, tookText } from "../job_text";
 import { failureBox, problemBox } from "../problem";
@@ -15,7 +16,7 @@ const CONTENT: Record<string, string> = {
 function stateText(job: Job): string {
   switch (job.state) {
     case "queued": return "Waits for its turn. Timing stages run alone on the machine, so a queue is normal.";
-    case "running": return `${percent(job.fraction)}, ${stageText(job.stage) || "starting"}; running for ${tookText(job)}${job.attempts > 1 ? `, attempt ${job.attempts}` : ""}`;
+    case "running": return job.cancel_asked === true ? "Cancelling: it stops at its next check point." : `${percent(job.fraction)}, ${stageText(job.stage) || "starting"}; running for ${tookText(job)}${job.attempts > 1 ? `, attempt ${job.attempts}` : ""}`;
     case "succeeded": return job.aim_met === false ? `Took ${tookText(job)}. The results are there, but not every view could be brought within the budget; the result names those.` : `Took ${tookText(job)}.`;
     case "failed": return "Nothing was written. What went wrong is below; a job with the fault mended can be submitted again.";
     case "cancelled": return "Stopped on request; nothing was written.";
@@ -28,23 +29,11 @@ function best(job: Job): HTMLElement | null {
   return element("dl", { class: "facts" }, ...Object.entries(job.best_so_far).flatMap(([key, value]) => [element("dt", {}, `best so far: ${key.replaceAll("_", " ")}`), element("dd", {}, text(key, value))]));
 }
 
-function download(artifact: Artifact): HTMLElement {
-  const link = element("a", { href: artifact.href, download: artifact.path.split("/").pop()! }, artifact.path);
-  if (hasToken()) // a link sends no token
-    link.addEventListener("click", async (event) => {
-      event.preventDefault();
-      const url = URL.createObjectURL(await getBlob(artifact.href));
-      element("a", { href: url, download: link.download }).click();
-      setTimeout(() => URL.revokeObjectURL(url), 60_000);
-    });
-  return link;
-}
-
 function artifacts(job: Job): HTMLElement {
   if (job.artifacts.length === 0)
     return section("files", "Files", isFinal(job.state) ? "This job left no files." : "Files appear when the job has finished, all at once.");
   const columns = [
-    { title: "file", cell: download }, { title: "holds", cell: (file: Artifact) => CONTENT[file.path] ?? "" },
+    { title: "file", cell: (file: Artifact) => artifactLink(file, file.path, { save: true }) }, { title: "holds", cell: (file: Artifact) => CONTENT[file.path] ?? "" },
     { title: "size", number: true, cell: (file: Artifact) => bytes(file.bytes) }, { title: "SHA-256", cell: (file: Artifact) => element("code", { title: file.sha256 }, file.sha256.slice(0, 16)) },
   ];
   return section("files", "Files", "", table(columns, job.artifacts, "Files of the job"));
@@ -73,7 +62,7 @@ class JobPage {
     const { job } = this;
     document.title = `${stateWord(job)}: ${job.label || job.id} \u2014 Standin`;
     replaceIfChanged(this.state, element("p", { role: "status" }, stateElement(job)), element("p", {}, stateText(job)), ...[progressElement(job), best(job)].filter((node) => node !== null));
-    const key = `${job.state} ${job.started} ${job.artifacts.length}`;
+    const key = `${job.state} ${job.cancel_asked} ${job.started} ${job.artifacts.length}`;
     if (key === this.restShown) return; // what is unfolded or focused there stays so
     this.restShown = key;
     const actions = element("div", { class: "actions" }, ...this.actions());
@@ -82,6 +71,7 @@ class JobPage {
 
   private actions(): Node[] {
     const { job } = this;
+    if (job.cancel_asked === true && !isFinal(job.state)) return [];
     if (!isFinal(job.state)) return [button("Cancel this job", () => void this.act(async () => (this.job = await cancelJob(job.id))))];
     const result = job.state === "succeeded" && [element("a", { class: "button primary", href: jobAddress(job.id, "result") }, "Result")];
     const walk = isWalkable(job) && [element("a", { class: "button", href: jobAddress(job.id, "walk") }, "Walk through it")];

@@ -1,6 +1,7 @@
 // A finished job's result: how it went, where the scene is slow, what it costs, and ways into the walk.
 
 import { artifactOf, getJob, getText, isFinal, isWalkable, type Job } from "../api";
+import { artifactLink } from "../artifact_link";
 import { element, folded, section } from "../elements";
 import { stateWord } from "../job_text";
 import { problemBox } from "../problem";
@@ -34,14 +35,14 @@ function ways(job: Job): HTMLElement {
   const report = artifactOf(job, "report.html");
   return element("div", { class: "actions" },
     isWalkable(job) && element("a", { class: "button primary", href: jobAddress(job.id, "walk") }, "Walk through it"),
-    report !== undefined && element("a", { class: "button", href: report.href }, "The whole report"), element("a", { class: "button", href: jobAddress(job.id) }, "Job and files"));
+    report !== undefined && artifactLink(report, "The whole report", { class: "button" }), element("a", { class: "button", href: jobAddress(job.id) }, "Job and files"));
 }
 
 function numbers(job: Job, metrics: Metrics, placement: Placement | null, signal: AbortSignal): (HTMLElement | null)[] {
   const walkId = placement !== null && isWalkable(job) ? job.id : null;
   return [
     element("p", { class: "context" }, context(metrics)), verdict(metrics), tiles(metrics), ways(job), heatMap({ metrics, placement, walkId }), frameTimes(metrics, signal),
-    worstViews(metrics, walkId, artifactOf(job, "report.html")?.href ?? null), unsolved(metrics), causes(metrics), memory(metrics, placement, signal),
+    worstViews(metrics, walkId, artifactOf(job, "report.html")), unsolved(metrics), causes(metrics), memory(metrics, placement, signal),
   ];
 }
 

@@ -1,6 +1,7 @@
 // The walk: the scene with the impostors that a placement names for the viewer's position and direction, as a runtime would draw it.
 
 import { artifactOf, getJob, getText, isFinal, type Job } from "../api";
+import { artifactLink } from "../artifact_link";
 import { button, element } from "../elements";
 import { jobAddress, parseTriple, walkAddress, type Route } from "../router";
 import { PlacementContent, type ViewContent } from "../runtime/content";
@@ -42,7 +43,7 @@ function notAGlb(job: Job): HTMLElement {
   const report = artifactOf(job, "report.html");
   return element("div", { class: "empty" }, element("h2", {}, "The walk needs a GLB"),
     element("p", {}, `${job.scene?.name ?? "The scene"} is of another format, which browsers do not draw. Convert it to GLB and place again to walk through it.`),
-    report !== undefined && element("p", {}, element("a", { href: report.href }, "report.html"), " shows the same result as pictures."));
+    report !== undefined && element("p", {}, artifactLink(report, "report.html"), " shows the same result as pictures."));
 }
 
 class Walk {
