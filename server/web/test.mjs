@@ -10,12 +10,22 @@ import { build } from "esbuild";
 const here = dirname(fileURLToPath(import.meta.url));
 const folder = mkdtempSync(join(tmpdir(), "standin-web-test-"));
 const wanted = process.argv.slice(2).map((name) => `${name}.test.ts`);
-const sources = readdirSync(join(here, "tests")).filter((name) => name.endsWith(".test.ts") && (wanted.length === 0 || wanted.includes(name)));
+const sources = readdirSync(join(here, "tests")).filter(
+  (name) => name.endsWith(".test.ts") && (wanted.length === 0 || wanted.includes(name)),
+);
 try {
-  await build({ entryPoints: sources.map((name) => join(here, "tests", name)), outdir: folder, bundle: true, platform: "node", format: "esm", outExtension: { ".js": ".mjs" }, logLevel: "warning" });
+  await build({
+    entryPoints: sources.map((name) => join(here, "tests", name)),
+    outdir: folder,
+    bundle: true,
+    platform: "node",
+    format: "esm",
+    outExtension: { ".js": ".mjs" },
+    logLevel: "warning",
+  });
   const files = readdirSync(folder).map((name) => join(folder, name));
   const env = { STANDIN_GOLDEN_DIR: join(here, "../../tests/golden"), ...process.env };
-  process.exitCode = files.length === 0 ? 1 : spawnSync(process.execPath, ["--test", ...files], { stdio: "inherit", env }).status ?? 1;
+  process.exitCode = files.length === 0 ? 1 : (spawnSync(process.execPath, ["--test", ...files], { stdio: "inherit", env }).status ?? 1);
 } finally {
   rmSync(folder, { recursive: true });
 }

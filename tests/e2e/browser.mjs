@@ -41,7 +41,10 @@ export async function expectAccessible({ page }, what) {
   await page.evaluate(axe);
   const { violations } = await page.evaluate(() => globalThis.axe.run());
   const bad = violations.filter(({ impact }) => impact === "serious" || impact === "critical");
-  assert.deepEqual(bad.map(({ id, nodes }) => `${what}: ${id}: ${nodes[0].html.slice(0, 200)}`), []);
+  assert.deepEqual(
+    bad.map(({ id, nodes }) => `${what}: ${id}: ${nodes[0].html.slice(0, 200)}`),
+    [],
+  );
 }
 
 /** The page's text. */
@@ -49,5 +52,10 @@ export const textOf = ({ page }) => page.$eval("main", (node) => node.innerText)
 
 export async function waitForText({ page }, pattern, timeout = 20_000) {
   const { source, flags } = pattern;
-  await page.waitForFunction((text, how) => new RegExp(text, how).test(document.querySelector("main").innerText), { timeout }, source, flags);
+  await page.waitForFunction(
+    (text, how) => new RegExp(text, how).test(document.querySelector("main").innerText),
+    { timeout },
+    source,
+    flags,
+  );
 }

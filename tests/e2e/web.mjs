@@ -36,10 +36,25 @@ function solvedView() {
   const { face, u_deg, v_deg } = placement.intervals[placement.cpvs[id].interval];
   const { n, u, v } = placement.faces[face];
   const tangent = ([from, to]) => Math.tan((((from + to) / 2) * Math.PI) / 180);
-  return { id, position: min.map((low, axis) => (low + max[axis]) / 2), direction: n.map((along, axis) => along + tangent(u_deg) * u[axis] + tangent(v_deg) * v[axis]) };
+  return {
+    id,
+    position: min.map((low, axis) => (low + max[axis]) / 2),
+    direction: n.map((along, axis) => along + tangent(u_deg) * u[axis] + tangent(v_deg) * v[axis]),
+  };
 }
 
-const VIEWS = { jobs: "#/", "new job": "#/new", "running job": "#/jobs/running", "failed job": "#/jobs/failed", "finished job": "#/jobs/done", result: "#/jobs/done/result", survey: "#/jobs/survey/result", "no result": "#/jobs/cancelled/result", "nothing to walk through": "#/jobs/failed/walk", "unknown address": "#/elsewhere" };
+const VIEWS = {
+  jobs: "#/",
+  "new job": "#/new",
+  "running job": "#/jobs/running",
+  "failed job": "#/jobs/failed",
+  "finished job": "#/jobs/done",
+  result: "#/jobs/done/result",
+  survey: "#/jobs/survey/result",
+  "no result": "#/jobs/cancelled/result",
+  "nothing to walk through": "#/jobs/failed/walk",
+  "unknown address": "#/elsewhere",
+};
 
 for (const scheme of ["light", "dark"])
   test(`every view opens and is accessible, ${scheme}`, async () => {
@@ -82,7 +97,9 @@ test("the walk draws the impostors of the view's region, and the originals when 
   assert.ok(Number(off.triangles) > Number(on.triangles), `${off.triangles} triangles without, ${on.triangles} with impostors`);
   assert.notDeepEqual(await (await tab.page.$("canvas")).screenshot(), pictureOn);
   assert.match(await textOf(tab), /switched off/);
-  const table = await tab.page.$$eval("table[aria-label='Frame statistics'] tbody td", (cells) => cells.map((cell) => Number(cell.textContent.replaceAll(",", ""))));
+  const table = await tab.page.$$eval("table[aria-label='Frame statistics'] tbody td", (cells) =>
+    cells.map((cell) => Number(cell.textContent.replaceAll(",", ""))),
+  );
   assert.deepEqual(table.slice(0, 2), [off.draws, off.triangles].map(Number), "what is counted is what was drawn");
   assert.deepEqual(table.slice(2), [on.draws, on.triangles].map(Number));
   noFaults();

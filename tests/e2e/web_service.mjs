@@ -13,7 +13,11 @@ let service, browser, tab;
 
 async function serve() {
   const targets = join(source, "configs/targets");
-  const child = spawn(binary, ["serve", "--data", join(folder, "data"), "--listen", "127.0.0.1:0", "--targets", targets, "--web", process.env.STANDIN_WEB], { stdio: ["ignore", "pipe", "inherit"] });
+  const child = spawn(
+    binary,
+    ["serve", "--data", join(folder, "data"), "--listen", "127.0.0.1:0", "--targets", targets, "--web", process.env.STANDIN_WEB],
+    { stdio: ["ignore", "pipe", "inherit"] },
+  );
   const [url] = await new Promise((done) => createInterface({ input: child.stdout }).once("line", (line) => done(line.match(/http:\S+/))));
   return { child, url };
 }
@@ -40,7 +44,14 @@ async function fillIn() {
   await waitForText(tab, /city\.glb is uploaded and chosen/);
   await tab.page.select("#target", "name:reference.json");
   await set("label", "small city");
-  const settings = { "view_space-interval_deg": 22.5, "view_space-refine_levels": 2, "visibility-rays": 20000, "select-size_bakes": 24, "survey-views": 500, "verify-views": 8 };
+  const settings = {
+    "view_space-interval_deg": 22.5,
+    "view_space-refine_levels": 2,
+    "visibility-rays": 20000,
+    "select-size_bakes": 24,
+    "survey-views": 500,
+    "verify-views": 8,
+  };
   for (const [key, value] of Object.entries(settings)) await set(`set-${key}`, String(value));
 }
 
@@ -50,7 +61,11 @@ test("a refusal of the service is shown at the field that it names", async () =>
   await tab.page.click("button[type=submit]");
   await waitForText(tab, /place needs a budget/);
   assert.equal(await tab.page.evaluate(() => document.activeElement.id), "budget");
-  assert.deepEqual(tab.faults.splice(0).map((fault) => fault.match(/status of (\d+)/)?.[1] ?? fault), ["422"], "the browser itself reports the refusal");
+  assert.deepEqual(
+    tab.faults.splice(0).map((fault) => fault.match(/status of (\d+)/)?.[1] ?? fault),
+    ["422"],
+    "the browser itself reports the refusal",
+  );
 });
 
 test("a job is submitted, watched to its end, and its result opened", async () => {
@@ -71,9 +86,12 @@ test("the walk switches the impostors that the service's placement names", async
   const placement = await (await fetch(`${service.url}/v1/jobs/${id}/artifacts/placement.json`)).json();
   const cpv = placement.cpvs.find(({ impostors }) => impostors.length > 0);
   assert.ok(cpv, "the budget asks for impostors");
-  const { min, max } = placement.cells[cpv.cell], { face, u_deg, v_deg } = placement.intervals[cpv.interval], { n, u, v } = placement.faces[face];
+  const { min, max } = placement.cells[cpv.cell],
+    { face, u_deg, v_deg } = placement.intervals[cpv.interval],
+    { n, u, v } = placement.faces[face];
   const tangent = ([from, to]) => Math.tan((((from + to) / 2) * Math.PI) / 180);
-  const position = min.map((low, axis) => (low + max[axis]) / 2), direction = n.map((along, axis) => along + tangent(u_deg) * u[axis] + tangent(v_deg) * v[axis]);
+  const position = min.map((low, axis) => (low + max[axis]) / 2),
+    direction = n.map((along, axis) => along + tangent(u_deg) * u[axis] + tangent(v_deg) * v[axis]);
   await visit(tab, `#/jobs/${id}/walk?position=${position}&direction=${direction}`, "canvas[data-draws]");
   assert.equal(Number((await canvas()).impostors), cpv.impostors.length);
   await tab.page.keyboard.press("i");

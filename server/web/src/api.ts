@@ -11,8 +11,18 @@ export interface Problem {
   readonly word?: string;
   readonly errors?: readonly { readonly pointer: string; readonly detail: string }[];
 }
-export interface Artifact { readonly path: string; readonly bytes: number; readonly sha256: string; readonly type: string; readonly href: string }
-export interface FileReference { readonly upload?: string; readonly name?: string; readonly job?: string }
+export interface Artifact {
+  readonly path: string;
+  readonly bytes: number;
+  readonly sha256: string;
+  readonly type: string;
+  readonly href: string;
+}
+export interface FileReference {
+  readonly upload?: string;
+  readonly name?: string;
+  readonly job?: string;
+}
 export interface JobRequest {
   readonly kind: JobKind;
   readonly scene?: FileReference;
@@ -42,16 +52,35 @@ export interface Job {
   readonly scene: { readonly name: string; readonly bytes: number; readonly href: string } | null;
   readonly artifacts: readonly Artifact[];
 }
-export interface Progress { readonly state?: JobState; readonly stage?: string | null; readonly fraction?: number | null }
-export interface Upload { readonly id: string; readonly name: string; readonly bytes: number; readonly created: string }
-export interface NamedFile { readonly name: string; readonly bytes: number }
-export interface Preset { readonly name: string; readonly spec: Record<string, unknown> }
-export interface Prediction { readonly valid: boolean; readonly predicted?: { readonly seconds?: number; readonly peak_rss_bytes?: number } }
+export interface Progress {
+  readonly state?: JobState;
+  readonly stage?: string | null;
+  readonly fraction?: number | null;
+}
+export interface Upload {
+  readonly id: string;
+  readonly name: string;
+  readonly bytes: number;
+  readonly created: string;
+}
+export interface NamedFile {
+  readonly name: string;
+  readonly bytes: number;
+}
+export interface Preset {
+  readonly name: string;
+  readonly spec: Record<string, unknown>;
+}
+export interface Prediction {
+  readonly valid: boolean;
+  readonly predicted?: { readonly seconds?: number; readonly peak_rss_bytes?: number };
+}
 
 export const isFinal = (state: JobState) => state === "succeeded" || state === "failed" || state === "cancelled";
 
 /// Whether the page can walk through its result: browsers draw GLB alone.
-export const isWalkable = (job: Job) => job.state === "succeeded" && job.kind === "place" && job.scene !== null && /\.glb$/i.test(job.scene.name);
+export const isWalkable = (job: Job) =>
+  job.state === "succeeded" && job.kind === "place" && job.scene !== null && /\.glb$/i.test(job.scene.name);
 
 /// A problem document (RFC 9457), or what a failure without one amounts to.
 export class ProblemError extends Error {
@@ -82,10 +111,17 @@ function problemOf(status: number, text: string): Problem {
 async function send(path: string, options: RequestInit = {}): Promise<Response> {
   let response: Response;
   try {
-    response = await fetch(path, { ...options, headers: { ...authorization(), ...(options.headers as Record<string, string> | undefined) } });
+    response = await fetch(path, {
+      ...options,
+      headers: { ...authorization(), ...(options.headers as Record<string, string> | undefined) },
+    });
   } catch (error) {
     if (options.signal?.aborted === true) throw error;
-    throw new ProblemError({ title: "The server cannot be reached", status: 0, detail: "It may be stopped or restarting; jobs that it accepted are kept." });
+    throw new ProblemError({
+      title: "The server cannot be reached",
+      status: 0,
+      detail: "It may be stopped or restarting; jobs that it accepted are kept.",
+    });
   }
   if (!response.ok) throw new ProblemError(problemOf(response.status, await response.text()));
   return response;
@@ -95,7 +131,11 @@ async function json<T>(path: string, options: RequestInit = {}): Promise<T> {
   return (await (await send(path, options)).json()) as T;
 }
 
-const withBody = (method: string, body: unknown): RequestInit => ({ method, body: JSON.stringify(body), headers: { "Content-Type": "application/json" } });
+const withBody = (method: string, body: unknown): RequestInit => ({
+  method,
+  body: JSON.stringify(body),
+  headers: { "Content-Type": "application/json" },
+});
 const jobPath = (id: string) => `/v1/jobs/${encodeURIComponent(id)}`;
 
 export const listJobs = (filters: { state?: string; kind?: string; after?: string }, signal?: AbortSignal) => {
@@ -147,22 +187,35 @@ export function upload(file: File, onShare: (share: number) => void, signal: Abo
     request.setRequestHeader("Content-Type", file.name.endsWith(".json") ? "application/json" : "application/octet-stream");
     request.upload.addEventListener("progress", (event) => event.lengthComputable && onShare(event.loaded / event.total));
     request.addEventListener("load", () =>
-      request.status < 300 ? resolve(JSON.parse(request.responseText) as Upload) : reject(new ProblemError(problemOf(request.status, request.responseText))));
-    request.addEventListener("error", () => reject(new ProblemError({ title: "The upload broke off", status: 0, detail: "The server cannot be reached or refused the file." })));
+      request.status < 300
+        ? resolve(JSON.parse(request.responseText) as Upload)
+        : reject(new ProblemError(problemOf(request.status, request.responseText))),
+    );
+    request.addEventListener("error", () =>
+      reject(new ProblemError({ title: "The upload broke off", status: 0, detail: "The server cannot be reached or refused the file." })),
+    );
     request.addEventListener("abort", () => reject(new DOMException("The upload was given up", "AbortError")));
     signal.addEventListener("abort", () => request.abort());
     request.send(file);
   });
 }
 
-interface ServerEvent { id: string; data: string }
+interface ServerEvent {
+  id: string;
+  data: string;
+}
 
 /// Complete events of a stream's text, and what is left of it.
 export function splitEvents(text: string): { events: ServerEvent[]; rest: string } {
   const blocks = text.replaceAll("\r\n", "\n").split("\n\n");
   const rest = blocks.pop()!;
   const events = blocks.map((block) => {
-    const field = (name: string) => block.split("\n").filter((line) => line.startsWith(`${name}:`)).map((line) => line.slice(name.length + 1).trimStart()).join("\n");
+    const field = (name: string) =>
+      block
+        .split("\n")
+        .filter((line) => line.startsWith(`${name}:`))
+        .map((line) => line.slice(name.length + 1).trimStart())
+        .join("\n");
     return { id: field("id"), data: field("data") };
   });
   return { events: events.filter((event) => event.data !== ""), rest };
@@ -177,9 +230,12 @@ const pause = (milliseconds: number, signal: AbortSignal) =>
 /// A job's events until its final state, resumed when the connection breaks. By fetch, since EventSource sends no token.
 export async function watchJob(id: string, signal: AbortSignal, onProgress: (progress: Progress) => void): Promise<void> {
   let last = "";
-  for (let failures = 0; !signal.aborted; ) {
+  for (let failures = 0; !signal.aborted;) {
     try {
-      const response = await send(`${jobPath(id)}/events`, { signal, headers: { Accept: "text/event-stream", ...(last === "" ? {} : { "Last-Event-ID": last }) } });
+      const response = await send(`${jobPath(id)}/events`, {
+        signal,
+        headers: { Accept: "text/event-stream", ...(last === "" ? {} : { "Last-Event-ID": last }) },
+      });
       const reader = response.body!.pipeThrough(new TextDecoderStream()).getReader();
       let text = "";
       for (let part = await reader.read(); !part.done; part = await reader.read()) {

@@ -12,20 +12,38 @@ function make(namespace: string, tag: string, attributes: Attributes, children: 
   return node;
 }
 
-export function element<Tag extends keyof HTMLElementTagNameMap>(tag: Tag, attributes: Attributes = {}, ...children: Child[]): HTMLElementTagNameMap[Tag] {
+export function element<Tag extends keyof HTMLElementTagNameMap>(
+  tag: Tag,
+  attributes: Attributes = {},
+  ...children: Child[]
+): HTMLElementTagNameMap[Tag] {
   return make("http://www.w3.org/1999/xhtml", tag, attributes, children) as HTMLElementTagNameMap[Tag];
 }
 
-export function drawing<Tag extends keyof SVGElementTagNameMap>(tag: Tag, attributes: Attributes = {}, ...children: Child[]): SVGElementTagNameMap[Tag] {
+export function drawing<Tag extends keyof SVGElementTagNameMap>(
+  tag: Tag,
+  attributes: Attributes = {},
+  ...children: Child[]
+): SVGElementTagNameMap[Tag] {
   if (!SVG_TAGS.has(tag)) throw new Error(`<${tag}> is no drawing element of this page`);
   return make("http://www.w3.org/2000/svg", tag, attributes, children) as SVGElementTagNameMap[Tag];
 }
 
 export function section(id: string, title: string, lead: string, ...children: Child[]): HTMLElement {
-  return element("section", { id, "aria-labelledby": `${id}-title` }, element("h2", { id: `${id}-title` }, title), lead !== "" && element("p", { class: "soft" }, lead), ...children);
+  return element(
+    "section",
+    { id, "aria-labelledby": `${id}-title` },
+    element("h2", { id: `${id}-title` }, title),
+    lead !== "" && element("p", { class: "soft" }, lead),
+    ...children,
+  );
 }
 
-export interface Column<Row> { readonly title: string; readonly number?: boolean; readonly cell: (row: Row) => Child }
+export interface Column<Row> {
+  readonly title: string;
+  readonly number?: boolean;
+  readonly cell: (row: Row) => Child;
+}
 
 export function table<Row>(columns: readonly Column<Row>[], rows: readonly Row[], caption: string): HTMLElement {
   const kind = (column: Column<Row>) => (column.number === true ? "number" : "text");

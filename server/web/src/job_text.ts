@@ -14,8 +14,17 @@ export const KIND_TEXT: Record<JobKind, string> = {
 };
 
 const STAGE_TEXT: Record<string, string> = {
-  load: "loading the scene", visibility: "finding what each cell may see", view_space: "dividing the view space", survey: "timing views", candidates: "generating candidates",
-  size_model: "learning how large impostors are", select: "choosing impostors", bake: "recording impostors", verify: "checking the result", lods: "simplifying objects", curves: "measuring error against time",
+  load: "loading the scene",
+  visibility: "finding what each cell may see",
+  view_space: "dividing the view space",
+  survey: "timing views",
+  candidates: "generating candidates",
+  size_model: "learning how large impostors are",
+  select: "choosing impostors",
+  bake: "recording impostors",
+  verify: "checking the result",
+  lods: "simplifying objects",
+  curves: "measuring error against time",
 };
 export const stageText = (stage: string | null) => (stage === null ? "" : (STAGE_TEXT[stage] ?? stage));
 
@@ -31,7 +40,9 @@ export function stateElement(job: Job): HTMLElement {
 export function progressElement(job: Job): HTMLElement | null {
   if (job.state !== "running") return null;
   const label = `Progress of ${job.label || job.id}`;
-  return job.fraction === null ? element("progress", { "aria-label": label }) : element("progress", { max: 1, value: job.fraction, "aria-label": label });
+  return job.fraction === null
+    ? element("progress", { "aria-label": label })
+    : element("progress", { max: 1, value: job.fraction, "aria-label": label });
 }
 
 export function tookText(job: Job): string {

@@ -17,11 +17,21 @@ export type View = (host: HTMLElement, route: Route, signal: AbortSignal) => Pro
 
 const showUnknown: View = async (host) => {
   document.title = "Not found \u2014 Standin";
-  host.append(element("h1", {}, "Nothing here"), element("p", {}, "This address names no view of the page. ", element("a", { href: "#/" }, "To the jobs")));
+  host.append(
+    element("h1", {}, "Nothing here"),
+    element("p", {}, "This address names no view of the page. ", element("a", { href: "#/" }, "To the jobs")),
+  );
 };
 // three.js is half of the page's bytes and only the walk needs it.
 const showWalk: View = async (host, route, signal) => (await import("./views/walk")).showWalk(host, route, signal);
-const VIEWS: Record<Route["view"], View> = { jobs: showJobs, new: showSubmit, job: showJob, result: showResult, walk: showWalk, unknown: showUnknown };
+const VIEWS: Record<Route["view"], View> = {
+  jobs: showJobs,
+  new: showSubmit,
+  job: showJob,
+  result: showResult,
+  walk: showWalk,
+  unknown: showUnknown,
+};
 
 const host = document.getElementById("content")!;
 let leave = new AbortController();

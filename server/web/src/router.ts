@@ -1,11 +1,18 @@
 // Addresses of the page's views: all behind "#", so that the server needs to know none of them.
 
-export interface Route { readonly view: "jobs" | "new" | "job" | "result" | "walk" | "unknown"; readonly id: string; readonly query: URLSearchParams }
+export interface Route {
+  readonly view: "jobs" | "new" | "job" | "result" | "walk" | "unknown";
+  readonly id: string;
+  readonly query: URLSearchParams;
+}
 
 export function parseRoute(hash: string): Route {
   const [path = "", search = ""] = hash.replace(/^#/, "").split("?", 2);
   const query = new URLSearchParams(search);
-  const [first = "", id = "", last = "", ...more] = path.split("/").filter((part) => part !== "").map(decodeURIComponent);
+  const [first = "", id = "", last = "", ...more] = path
+    .split("/")
+    .filter((part) => part !== "")
+    .map(decodeURIComponent);
   if (more.length > 0) return { view: "unknown", id: "", query };
   if (first === "") return { view: "jobs", id: "", query };
   if (first === "new" && id === "") return { view: "new", id: "", query };
@@ -14,7 +21,8 @@ export function parseRoute(hash: string): Route {
   return { view: "unknown", id: "", query };
 }
 
-export const jobAddress = (id: string, view: "" | "result" | "walk" = "") => `#/jobs/${encodeURIComponent(id)}${view === "" ? "" : `/${view}`}`;
+export const jobAddress = (id: string, view: "" | "result" | "walk" = "") =>
+  `#/jobs/${encodeURIComponent(id)}${view === "" ? "" : `/${view}`}`;
 
 type Triple = readonly [number, number, number];
 const shortened = (value: number) => String(Number(value.toPrecision(7)));

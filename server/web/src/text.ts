@@ -17,7 +17,8 @@ export const percent = (share: unknown) => (isNumber(share) ? `${significant(100
 export function bytes(value: unknown): string {
   if (!isNumber(value)) return NONE;
   const units = ["B", "kB", "MB", "GB"];
-  let scaled = value, unit = 0;
+  let scaled = value,
+    unit = 0;
   while (scaled >= 1000 && unit < units.length - 1) {
     scaled /= 1000;
     ++unit;

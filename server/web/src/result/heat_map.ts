@@ -11,26 +11,44 @@ const LIMITS = [0.25, 0.5, 0.75, 1, 1.25, 1.5, 2, 3, Infinity]; // upper ends of
 const GROUND_M = 0.5; // lower objects are no landmarks
 
 type TimeKey = "before_ms" | "after_ms";
-interface Plate { readonly svg: SVGSVGElement; readonly marker: SVGRectElement }
-export interface HeatOptions { readonly metrics: Metrics; readonly placement: Placement | null; readonly walkId: string | null } // null: nothing to walk through
+interface Plate {
+  readonly svg: SVGSVGElement;
+  readonly marker: SVGRectElement;
+}
+export interface HeatOptions {
+  readonly metrics: Metrics;
+  readonly placement: Placement | null;
+  readonly walkId: string | null;
+} // null: nothing to walk through
 
-const classOf = (time: number | null | undefined, middle: number) => (isNumber(time) ? String(LIMITS.findIndex((limit) => time <= limit * middle)) : "none");
+const classOf = (time: number | null | undefined, middle: number) =>
+  isNumber(time) ? String(LIMITS.findIndex((limit) => time <= limit * middle)) : "none";
 
 function legend(middle: number, name: string): HTMLElement {
-  return element("ul", { class: "legend", "aria-label": "Colours of the heat map" }, ...LIMITS.map((limit, index) => {
-    const low = index === 0 ? 0 : LIMITS[index - 1]! * middle;
-    const range = limit === Infinity ? `over ${milliseconds(low)}` : `${significant(low, 3)} to ${milliseconds(limit * middle)}`;
-    return element("li", {}, element("span", { class: `swatch heat-${index}` }), limit === 1 ? `${range} (${name})` : range);
-  }));
+  return element(
+    "ul",
+    { class: "legend", "aria-label": "Colours of the heat map" },
+    ...LIMITS.map((limit, index) => {
+      const low = index === 0 ? 0 : LIMITS[index - 1]! * middle;
+      const range = limit === Infinity ? `over ${milliseconds(low)}` : `${significant(low, 3)} to ${milliseconds(limit * middle)}`;
+      return element("li", {}, element("span", { class: `swatch heat-${index}` }), limit === 1 ? `${range} (${name})` : range);
+    }),
+  );
 }
 
 /// Outlines of what stands in the scene.
 function planOutline(placement: Placement): string {
-  return placement.scene.objects.filter(({ bounds: { min, max } }) => max[1] - min[1] > GROUND_M)
-    .map(({ bounds: { min, max } }) => `M${min[0]} ${min[2]}H${max[0]}V${max[2]}H${min[0]}Z`).join("");
+  return placement.scene.objects
+    .filter(({ bounds: { min, max } }) => max[1] - min[1] > GROUND_M)
+    .map(({ bounds: { min, max } }) => `M${min[0]} ${min[2]}H${max[0]}V${max[2]}H${min[0]}Z`)
+    .join("");
 }
 
-interface Region { readonly direction: Triple; readonly text: string; readonly y: number }
+interface Region {
+  readonly direction: Triple;
+  readonly text: string;
+  readonly y: number;
+}
 
 /// Per cell of the heat map: its slowest region's direction, and what it says.
 class Regions {
@@ -45,7 +63,8 @@ class Regions {
     const best = new Map<string, number>();
     placement.cells.forEach((cell, id) => {
       const key = keyOf({ x0: cell.min[0], z0: cell.min[2] });
-      const cpv = slowest.get(id), time = cpv === undefined ? 0 : placement.cpvs[cpv]!.bound_before_ms;
+      const cpv = slowest.get(id),
+        time = cpv === undefined ? 0 : placement.cpvs[cpv]!.bound_before_ms;
       if (this.byPlace.has(key) && (best.get(key) ?? 0) >= time) return;
       best.set(key, time);
       this.byPlace.set(key, regionOf(placement, id, cpv));
@@ -66,7 +85,8 @@ function regionOf(placement: Placement, cellId: number, cpvId: number | undefine
   if (cpvId === undefined) return { direction: [0, 0, -1], text: `${seen}; no slow direction`, y };
   const cpv = placement.cpvs[cpvId]!;
   const direction = middleOf(placement, cpv.interval);
-  const help = cpv.impostors.length === 0 ? "no impostor" : `${count(cpv.impostors.length)} ${cpv.impostors.length === 1 ? "impostor" : "impostors"}`;
+  const help =
+    cpv.impostors.length === 0 ? "no impostor" : `${count(cpv.impostors.length)} ${cpv.impostors.length === 1 ? "impostor" : "impostors"}`;
   return { direction, text: `slowest looking ${compass(direction)}, where ${seen}; ${help}${cpv.solved ? "" : ", not solved"}`, y };
 }
 
@@ -102,18 +122,35 @@ class HeatMap {
   private current: HeatCell | null = null;
   readonly element: HTMLElement;
 
-  constructor(private readonly options: HeatOptions, private readonly cells: readonly HeatCell[]) {
+  constructor(
+    private readonly options: HeatOptions,
+    private readonly cells: readonly HeatCell[],
+  ) {
     const { metrics, placement, walkId } = options;
     const hasBudget = isNumber(metrics.budget_ms) && metrics.budget_ms > 0;
     this.middle = hasBudget ? metrics.budget_ms! : Math.max(...cells.map((cell) => cell.before_ms)) / 2 || 1;
     this.regions = placement === null ? null : new Regions(placement);
-    const keys: [TimeKey, string][] = cells.some((cell) => isNumber(cell.after_ms)) ? [["before_ms", "Before"], ["after_ms", "With impostors"]] : [["before_ms", "As it is"]];
+    const keys: [TimeKey, string][] = cells.some((cell) => isNumber(cell.after_ms))
+      ? [
+          ["before_ms", "Before"],
+          ["after_ms", "With impostors"],
+        ]
+      : [["before_ms", "As it is"]];
     const drawn = keys.map(([key, name]) => this.plate(key, name));
     this.plates = drawn.map(({ plate }) => plate);
     this.point(null);
-    const lead = `The view space from above, x to the right and z downwards${placement === null ? "" : ", with the outlines of what stands in the scene"}. A cell's colour is the time bound of its slowest view direction; blue is within ${hasBudget ? "the budget" : "half of the slowest time, since the job has no budget"}.`
-      + (walkId === null ? "" : " Point at a cell, or tab to a picture and move by arrow keys, to read it; a click or Enter walks there.");
-    this.element = section("map", "Where it is slow", lead, element("div", { class: "side" }, ...drawn.map(({ figure }) => figure)), legend(this.middle, hasBudget ? "budget" : "half of the slowest"), this.readout, this.slowest());
+    const lead =
+      `The view space from above, x to the right and z downwards${placement === null ? "" : ", with the outlines of what stands in the scene"}. A cell's colour is the time bound of its slowest view direction; blue is within ${hasBudget ? "the budget" : "half of the slowest time, since the job has no budget"}.` +
+      (walkId === null ? "" : " Point at a cell, or tab to a picture and move by arrow keys, to read it; a click or Enter walks there.");
+    this.element = section(
+      "map",
+      "Where it is slow",
+      lead,
+      element("div", { class: "side" }, ...drawn.map(({ figure }) => figure)),
+      legend(this.middle, hasBudget ? "budget" : "half of the slowest"),
+      this.readout,
+      this.slowest(),
+    );
   }
 
   private plate(key: TimeKey, name: string): { plate: Plate; figure: HTMLElement } {
@@ -127,16 +164,34 @@ class HeatMap {
     const marker = drawing("rect", { class: "marker", width: 0, height: 0, visibility: "hidden" });
     const over = `${count(this.cells.filter((cell) => isNumber(cell[key]) && cell[key] > this.middle).length)} of ${count(this.cells.length)} cells over ${milliseconds(this.middle)}`;
     const { placement } = this.options;
-    const svg = drawing("svg", { class: "plate", viewBox: this.viewBox(), role: "application", tabindex: 0, "aria-label": `Plan view, ${name}: ${over}`, preserveAspectRatio: "xMidYMid meet" },
-      ...shades.map((shade) => drawing("path", { d: outlines.get(shade), class: `heat-${shade}` })), placement !== null && drawing("path", { d: planOutline(placement), class: "objects" }), marker);
+    const svg = drawing(
+      "svg",
+      {
+        class: "plate",
+        viewBox: this.viewBox(),
+        role: "application",
+        tabindex: 0,
+        "aria-label": `Plan view, ${name}: ${over}`,
+        preserveAspectRatio: "xMidYMid meet",
+      },
+      ...shades.map((shade) => drawing("path", { d: outlines.get(shade), class: `heat-${shade}` })),
+      placement !== null && drawing("path", { d: planOutline(placement), class: "objects" }),
+      marker,
+    );
     this.listen(svg);
-    return { plate: { svg, marker }, figure: element("figure", {}, svg, element("figcaption", {}, element("strong", {}, name), ` \u2014 ${over}`)) };
+    return {
+      plate: { svg, marker },
+      figure: element("figure", {}, svg, element("figcaption", {}, element("strong", {}, name), ` \u2014 ${over}`)),
+    };
   }
 
   private viewBox(): string {
     const { cells } = this;
-    const x0 = Math.min(...cells.map((cell) => cell.x0)), z0 = Math.min(...cells.map((cell) => cell.z0));
-    const width = Math.max(...cells.map((cell) => cell.x1)) - x0, depth = Math.max(...cells.map((cell) => cell.z1)) - z0, margin = 0.02 * Math.max(width, depth);
+    const x0 = Math.min(...cells.map((cell) => cell.x0)),
+      z0 = Math.min(...cells.map((cell) => cell.z0));
+    const width = Math.max(...cells.map((cell) => cell.x1)) - x0,
+      depth = Math.max(...cells.map((cell) => cell.z1)) - z0,
+      margin = 0.02 * Math.max(width, depth);
     return [x0 - margin, z0 - margin, width + 2 * margin, depth + 2 * margin].join(" ");
   }
 
@@ -157,17 +212,21 @@ class HeatMap {
   }
 
   private slowestAt(x: number, z: number): HeatCell | null {
-    return this.cells.filter((cell) => cell.x0 <= x && x <= cell.x1 && cell.z0 <= z && z <= cell.z1).reduce<HeatCell | null>((best, cell) => (best === null || cell.before_ms > best.before_ms ? cell : best), null);
+    return this.cells
+      .filter((cell) => cell.x0 <= x && x <= cell.x1 && cell.z0 <= z && z <= cell.z1)
+      .reduce<HeatCell | null>((best, cell) => (best === null || cell.before_ms > best.before_ms ? cell : best), null);
   }
 
   /// The nearest cell that lies more in the direction of the step than aside of it.
   private neighbour(from: HeatCell, [dx, dz]: [number, number]): HeatCell {
     const centre = (cell: HeatCell): [number, number] => [(cell.x0 + cell.x1) / 2, (cell.z0 + cell.z1) / 2];
     const [x, z] = centre(from);
-    let best = from, least = Infinity;
+    let best = from,
+      least = Infinity;
     for (const cell of this.cells) {
       const [cx, cz] = centre(cell);
-      const along = (cx - x) * dx + (cz - z) * dz, aside = Math.abs((cx - x) * dz + (cz - z) * dx);
+      const along = (cx - x) * dx + (cz - z) * dz,
+        aside = Math.abs((cx - x) * dz + (cz - z) * dx);
       if (along > 0 && along >= aside && along + 2 * aside < least) [best, least] = [cell, along + 2 * aside];
     }
     return best;
@@ -177,14 +236,22 @@ class HeatMap {
     this.current = cell;
     for (const { marker } of this.plates) {
       marker.setAttribute("visibility", cell === null ? "hidden" : "visible");
-      if (cell !== null) for (const [name, value] of Object.entries({ x: cell.x0, y: cell.z0, width: cell.x1 - cell.x0, height: cell.z1 - cell.z0 })) marker.setAttribute(name, String(value));
+      if (cell !== null)
+        for (const [name, value] of Object.entries({ x: cell.x0, y: cell.z0, width: cell.x1 - cell.x0, height: cell.z1 - cell.z0 }))
+          marker.setAttribute(name, String(value));
     }
     const link = cell === null ? null : this.link(cell);
-    this.readout.replaceChildren(...(cell === null ? ["Point at a cell to read it."] : [this.describe(cell), ...(link === null ? [] : [" ", element("a", { href: link }, "Walk there")])]));
+    this.readout.replaceChildren(
+      ...(cell === null
+        ? ["Point at a cell to read it."]
+        : [this.describe(cell), ...(link === null ? [] : [" ", element("a", { href: link }, "Walk there")])]),
+    );
   }
 
   private describe(cell: HeatCell): string {
-    const times = isNumber(cell.after_ms) ? `${milliseconds(cell.before_ms)} before, ${milliseconds(cell.after_ms)} with impostors` : milliseconds(cell.before_ms);
+    const times = isNumber(cell.after_ms)
+      ? `${milliseconds(cell.before_ms)} before, ${milliseconds(cell.after_ms)} with impostors`
+      : milliseconds(cell.before_ms);
     const region = this.regions?.at(cell);
     return `x ${significant((cell.x0 + cell.x1) / 2, 4)} m, z ${significant((cell.z0 + cell.z1) / 2, 4)} m: ${times}${region === undefined ? "" : `; ${region.text}`}.`;
   }
@@ -208,12 +275,21 @@ class HeatMap {
     const range = (low: number, high: number) => `${significant(low, 4)} \u2026 ${significant(high, 4)}`;
     const place = (cell: HeatCell) => {
       const link = this.link(cell);
-      return link === null ? "" : element("a", { href: link, "aria-label": `walk there: x ${significant(cell.x0, 4)}, z ${significant(cell.z0, 4)}` }, "walk there");
+      return link === null
+        ? ""
+        : element(
+            "a",
+            { href: link, "aria-label": `walk there: x ${significant(cell.x0, 4)}, z ${significant(cell.z0, 4)}` },
+            "walk there",
+          );
     };
     const columns = [
-      { title: "x from\u2026to, m", cell: (cell: HeatCell) => range(cell.x0, cell.x1) }, { title: "z from\u2026to, m", cell: (cell: HeatCell) => range(cell.z0, cell.z1) },
-      { title: "before", number: true, cell: (cell: HeatCell) => milliseconds(cell.before_ms) }, { title: "with impostors", number: true, cell: (cell: HeatCell) => milliseconds(cell.after_ms) },
-      { title: "why", cell: (cell: HeatCell) => this.regions?.at(cell)?.text ?? "" }, { title: "", cell: place },
+      { title: "x from\u2026to, m", cell: (cell: HeatCell) => range(cell.x0, cell.x1) },
+      { title: "z from\u2026to, m", cell: (cell: HeatCell) => range(cell.z0, cell.z1) },
+      { title: "before", number: true, cell: (cell: HeatCell) => milliseconds(cell.before_ms) },
+      { title: "with impostors", number: true, cell: (cell: HeatCell) => milliseconds(cell.after_ms) },
+      { title: "why", cell: (cell: HeatCell) => this.regions?.at(cell)?.text ?? "" },
+      { title: "", cell: place },
     ];
     return folded("The slowest cells as a table", table(columns, this.bySlowness().slice(0, 20), "Slowest cells of the view space"));
   }

@@ -45,19 +45,31 @@ function angleSlot(angle: number, level: number): number {
   return index;
 }
 
-interface FaceAngles { face: number; a: number; b: number }
+interface FaceAngles {
+  face: number;
+  a: number;
+  b: number;
+}
 
 function faceAngles([dx, dy, dz]: Vector): FaceAngles | null {
-  const x = Math.abs(dx), y = Math.abs(dy), z = Math.abs(dz);
-  if (x >= y && x >= z && x > 0) return dx > 0 ? { face: 0, a: Math.atan2(-dz, x), b: Math.atan2(dy, x) } : { face: 1, a: Math.atan2(dz, x), b: Math.atan2(dy, x) };
-  if (y >= z && y > 0) return dy > 0 ? { face: 2, a: Math.atan2(dx, y), b: Math.atan2(-dz, y) } : { face: 3, a: Math.atan2(dx, y), b: Math.atan2(dz, y) };
+  const x = Math.abs(dx),
+    y = Math.abs(dy),
+    z = Math.abs(dz);
+  if (x >= y && x >= z && x > 0)
+    return dx > 0 ? { face: 0, a: Math.atan2(-dz, x), b: Math.atan2(dy, x) } : { face: 1, a: Math.atan2(dz, x), b: Math.atan2(dy, x) };
+  if (y >= z && y > 0)
+    return dy > 0 ? { face: 2, a: Math.atan2(dx, y), b: Math.atan2(-dz, y) } : { face: 3, a: Math.atan2(dx, y), b: Math.atan2(dz, y) };
   if (!(z > 0)) return null;
   return dz > 0 ? { face: 4, a: Math.atan2(dx, z), b: Math.atan2(dy, z) } : { face: 5, a: Math.atan2(-dx, z), b: Math.atan2(dy, z) };
 }
 
 const holds = (cell: Cell, position: Vector) =>
-  cell.min[0] <= position[0] && position[0] <= cell.max[0] && cell.min[1] <= position[1] && position[1] <= cell.max[1] &&
-  cell.min[2] <= position[2] && position[2] <= cell.max[2];
+  cell.min[0] <= position[0] &&
+  position[0] <= cell.max[0] &&
+  cell.min[1] <= position[1] &&
+  position[1] <= cell.max[1] &&
+  cell.min[2] <= position[2] &&
+  position[2] <= cell.max[2];
 
 export class PlacementLookup {
   private readonly intervalLevels: readonly number[]; // those in use, finest first
@@ -73,7 +85,10 @@ export class PlacementLookup {
   }
 
   findCell(position: Vector): number | null {
-    const { cells, view_space: { root } } = this.placement;
+    const {
+      cells,
+      view_space: { root },
+    } = this.placement;
     if (cells.length === 0) return null;
     const finest = cells[cells.length - 1]!.level;
     const side = root.side / 2 ** finest;

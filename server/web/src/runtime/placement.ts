@@ -1,7 +1,10 @@
 // placement.json as a renderer reads it (configs/placement.schema.json): what to draw for any view. Depends on nothing.
 
 export type Vector = readonly [number, number, number];
-export interface Box { readonly min: Vector; readonly max: Vector }
+export interface Box {
+  readonly min: Vector;
+  readonly max: Vector;
+}
 export type FaceName = "+x" | "-x" | "+y" | "-y" | "+z" | "-z";
 
 export interface Cell extends Box {
@@ -9,7 +12,11 @@ export interface Cell extends Box {
   readonly index: Vector;
   readonly visible_objects: readonly number[] | null; // null: all
 }
-export interface Interval { readonly face: FaceName; readonly level: number; readonly index: readonly [number, number] }
+export interface Interval {
+  readonly face: FaceName;
+  readonly level: number;
+  readonly index: readonly [number, number];
+}
 export interface Cpv {
   readonly cell: number;
   readonly interval: number;
@@ -27,9 +34,20 @@ export interface Impostor {
   readonly time_bound_ms: number;
   readonly gltf_node: string;
 }
-export interface SceneObject { readonly id: number; readonly name: string; readonly gltf_node: string; readonly bounds: Box }
-export interface Level { readonly least_distance: number; readonly triangles: number; readonly gltf_node: string }
-export interface Lods { readonly objects: readonly { readonly object: number; readonly levels: readonly Level[] }[] }
+export interface SceneObject {
+  readonly id: number;
+  readonly name: string;
+  readonly gltf_node: string;
+  readonly bounds: Box;
+}
+export interface Level {
+  readonly least_distance: number;
+  readonly triangles: number;
+  readonly gltf_node: string;
+}
+export interface Lods {
+  readonly objects: readonly { readonly object: number; readonly levels: readonly Level[] }[];
+}
 
 export interface Placement {
   readonly format: "standin.placement";
@@ -53,7 +71,9 @@ export interface Placement {
 export function parsePlacement(text: string): Placement {
   const placement = JSON.parse(text) as Placement;
   if (placement.format !== "standin.placement" || placement.version !== 1)
-    throw new Error(`format ${JSON.stringify(placement.format)} version ${JSON.stringify(placement.version)} is not standin.placement version 1`);
+    throw new Error(
+      `format ${JSON.stringify(placement.format)} version ${JSON.stringify(placement.version)} is not standin.placement version 1`,
+    );
   const require = (holds: boolean, what: string) => {
     if (!holds) throw new Error(`placement: ${what} is out of range`);
   };
@@ -63,6 +83,7 @@ export function parsePlacement(text: string): Placement {
     require(cpv.impostors.every((impostor) => impostor < placement.impostors.length), `cpvs[${id}].impostors`);
   });
   placement.impostors.forEach((impostor, id) =>
-    require(impostor.objects.every((object) => object < placement.scene.objects.length), `impostors[${id}].objects`));
+    require(impostor.objects.every((object) => object < placement.scene.objects.length), `impostors[${id}].objects`),
+  );
   return placement;
 }

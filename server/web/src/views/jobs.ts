@@ -10,7 +10,8 @@ import { ago, percent } from "../text";
 const REFRESH_MS = 2000;
 
 function actions(job: Job): HTMLElement {
-  const link = (view: "result" | "walk", text: string) => element("a", { href: jobAddress(job.id, view), "aria-label": `${text} of ${job.label || job.id}` }, text);
+  const link = (view: "result" | "walk", text: string) =>
+    element("a", { href: jobAddress(job.id, view), "aria-label": `${text} of ${job.label || job.id}` }, text);
   if (job.state !== "succeeded" || job.artifacts.length === 0) return element("span");
   return element("span", {}, link("result", "Result"), isWalkable(job) && " \u00b7 ", isWalkable(job) && link("walk", "Walk"));
 }
@@ -32,14 +33,33 @@ const COLUMNS: readonly Column<Job>[] = [
 ];
 
 function nothing(filtered: boolean): HTMLElement {
-  if (filtered) return element("div", { class: "empty" }, element("h2", {}, "No job of this kind and state"), element("p", {}, "Others may be there: choose \u201call\u201d."));
-  return element("div", { class: "empty" }, element("h2", {}, "No job yet"),
-    element("p", {}, "A job takes a scene and a frame-time budget and finds the views that are too slow, and the impostors that make them fast enough."),
-    element("p", {}, element("a", { class: "button primary", href: "#/new" }, "Submit the first one")));
+  if (filtered)
+    return element(
+      "div",
+      { class: "empty" },
+      element("h2", {}, "No job of this kind and state"),
+      element("p", {}, "Others may be there: choose \u201call\u201d."),
+    );
+  return element(
+    "div",
+    { class: "empty" },
+    element("h2", {}, "No job yet"),
+    element(
+      "p",
+      {},
+      "A job takes a scene and a frame-time budget and finds the views that are too slow, and the impostors that make them fast enough.",
+    ),
+    element("p", {}, element("a", { class: "button primary", href: "#/new" }, "Submit the first one")),
+  );
 }
 
 function choice(id: string, label: string, values: readonly string[], current: string): { node: HTMLElement; select: HTMLSelectElement } {
-  const select = element("select", { id }, element("option", { value: "" }, "all"), ...values.map((value) => element("option", { value, selected: value === current }, value)));
+  const select = element(
+    "select",
+    { id },
+    element("option", { value: "" }, "all"),
+    ...values.map((value) => element("option", { value, selected: value === current }, value)),
+  );
   return { node: element("label", { for: id }, `${label} `, select), select };
 }
 
@@ -51,15 +71,24 @@ class JobList {
   private older: Job[] = []; // pages after the first, as they were when asked for
   private next: string | null = null;
 
-  constructor(host: HTMLElement, query: URLSearchParams, private readonly signal: AbortSignal) {
+  constructor(
+    host: HTMLElement,
+    query: URLSearchParams,
+    private readonly signal: AbortSignal,
+  ) {
     this.kind = choice("kind", "Kind", JOB_KINDS, query.get("kind") ?? "");
     this.state = choice("state", "State", ["queued", "running", "succeeded", "failed", "cancelled"], query.get("state") ?? "");
     for (const { select } of [this.kind, this.state]) select.addEventListener("change", () => this.refilter());
-    host.append(element("div", { class: "controls" }, this.kind.node, this.state.node, element("a", { class: "button", href: "#/new" }, "New job")), this.list, this.more);
+    host.append(
+      element("div", { class: "controls" }, this.kind.node, this.state.node, element("a", { class: "button", href: "#/new" }, "New job")),
+      this.list,
+      this.more,
+    );
   }
 
   private get filters(): { kind?: string; state?: string } {
-    const { value: kind } = this.kind.select, { value: state } = this.state.select;
+    const { value: kind } = this.kind.select,
+      { value: state } = this.state.select;
     return { ...(kind !== "" && { kind }), ...(state !== "" && { state }) };
   }
 
@@ -80,7 +109,10 @@ class JobList {
   }
 
   private show(jobs: readonly Job[]): void {
-    replaceIfChanged(this.list, jobs.length === 0 ? nothing(Object.keys(this.filters).length > 0) : table(COLUMNS, jobs, "Jobs, newest first"));
+    replaceIfChanged(
+      this.list,
+      jobs.length === 0 ? nothing(Object.keys(this.filters).length > 0) : table(COLUMNS, jobs, "Jobs, newest first"),
+    );
     this.more.replaceChildren(...(this.next === null ? [] : [button("Older jobs", () => void this.showOlder())]));
   }
 

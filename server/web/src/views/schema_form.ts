@@ -11,17 +11,26 @@ interface Schema {
   readonly pattern?: string;
   readonly properties?: Record<string, Schema>;
   readonly items?: Schema;
-  readonly minimum?: number; readonly maximum?: number; readonly exclusiveMinimum?: number; readonly exclusiveMaximum?: number;
+  readonly minimum?: number;
+  readonly maximum?: number;
+  readonly exclusiveMinimum?: number;
+  readonly exclusiveMaximum?: number;
 }
 
 // Of the server, not of a job: it sets them itself.
 const NOT_OFFERED = new Set(["cache", "threads"]);
 
 type Input = HTMLInputElement | HTMLSelectElement;
-interface Field { readonly path: readonly string[]; readonly schema: Schema; readonly input: Input; readonly standard: string }
+interface Field {
+  readonly path: readonly string[];
+  readonly schema: Schema;
+  readonly input: Input;
+  readonly standard: string;
+}
 
 const isNumeric = (schema: Schema | undefined) => schema?.type === "number" || schema?.type === "integer";
-const asText = (value: unknown) => (Array.isArray(value) ? (value.some((item) => typeof item === "object") ? JSON.stringify(value) : value.join(",")) : String(value ?? ""));
+const asText = (value: unknown) =>
+  Array.isArray(value) ? (value.some((item) => typeof item === "object") ? JSON.stringify(value) : value.join(",")) : String(value ?? "");
 
 function rangeText({ minimum, maximum, exclusiveMinimum, exclusiveMaximum }: Schema): string {
   const low = minimum !== undefined ? `at least ${minimum}` : exclusiveMinimum !== undefined ? `more than ${exclusiveMinimum}` : "";
@@ -30,13 +39,27 @@ function rangeText({ minimum, maximum, exclusiveMinimum, exclusiveMaximum }: Sch
 }
 
 function inputOf(id: string, schema: Schema): Input {
-  if (schema.enum !== undefined) return element("select", { id }, ...schema.enum.map((value) => element("option", { value, selected: value === schema.default }, value)));
+  if (schema.enum !== undefined)
+    return element(
+      "select",
+      { id },
+      ...schema.enum.map((value) => element("option", { value, selected: value === schema.default }, value)),
+    );
   if (schema.type === "boolean") return element("input", { id, type: "checkbox", checked: schema.default === true });
-  if (isNumeric(schema)) return element("input", { id, type: "number", step: schema.type === "integer" ? 1 : "any", min: schema.minimum, max: schema.maximum, value: asText(schema.default) });
+  if (isNumeric(schema))
+    return element("input", {
+      id,
+      type: "number",
+      step: schema.type === "integer" ? 1 : "any",
+      min: schema.minimum,
+      max: schema.maximum,
+      value: asText(schema.default),
+    });
   return element("input", { id, type: "text", value: asText(schema.default), pattern: schema.pattern });
 }
 
-const textOf = (input: Input) => (input instanceof HTMLInputElement && input.type === "checkbox" ? String(input.checked) : input.value.trim());
+const textOf = (input: Input) =>
+  input instanceof HTMLInputElement && input.type === "checkbox" ? String(input.checked) : input.value.trim();
 
 /// What a field's text means; a list whose text is no list goes as text, and the server says what is wrong with it.
 function parsed(schema: Schema, text: string): unknown {
@@ -59,11 +82,17 @@ export class SchemaForm {
   private readonly fields: Field[] = [];
   readonly element: HTMLElement;
 
-  constructor(schema: object, private readonly shownElsewhere: ReadonlySet<string>) {
+  constructor(
+    schema: object,
+    private readonly shownElsewhere: ReadonlySet<string>,
+  ) {
     const entries = Object.entries((schema as Schema).properties ?? {}).filter(([key]) => !NOT_OFFERED.has(key));
     const single = entries.filter(([, value]) => value.type !== "object").map(([key, value]) => this.field([key], value));
-    const groups = entries.filter(([, value]) => value.type === "object").map(([key, value]) =>
-      folded(key.replaceAll("_", " "), ...Object.entries(value.properties ?? {}).map(([name, inner]) => this.field([key, name], inner))));
+    const groups = entries
+      .filter(([, value]) => value.type === "object")
+      .map(([key, value]) =>
+        folded(key.replaceAll("_", " "), ...Object.entries(value.properties ?? {}).map(([name, inner]) => this.field([key, name], inner))),
+      );
     this.element = element("div", {}, ...single, ...groups);
   }
 
@@ -74,7 +103,13 @@ export class SchemaForm {
     this.fields.push({ path, schema, input, standard: textOf(input) });
     const help = [schema.description, rangeText(schema)].filter((part) => part !== undefined && part !== "").join("; ");
     input.setAttribute("aria-describedby", `${id}-help`);
-    return element("div", { class: "field", "data-pointer": `/spec/${path.join("/")}` }, element("label", { for: id }, path.at(-1)!.replaceAll("_", " ")), input, element("p", { class: "soft", id: `${id}-help` }, help));
+    return element(
+      "div",
+      { class: "field", "data-pointer": `/spec/${path.join("/")}` },
+      element("label", { for: id }, path.at(-1)!.replaceAll("_", " ")),
+      input,
+      element("p", { class: "soft", id: `${id}-help` }, help),
+    );
   }
 
   /// Fills in a preset; settings that it does not name go back to their defaults.

@@ -1,14 +1,25 @@
 // A GLB file's two chunks, for what is read without three.js' loader: lists of corners in lods.glb.
 
-interface Accessor { bufferView: number; byteOffset?: number; componentType: number; count: number }
-interface Primitive { indices?: number; extras?: { scene_mesh?: number; scene_primitive?: number } }
+interface Accessor {
+  bufferView: number;
+  byteOffset?: number;
+  componentType: number;
+  count: number;
+}
+interface Primitive {
+  indices?: number;
+  extras?: { scene_mesh?: number; scene_primitive?: number };
+}
 export interface GlbJson {
   nodes?: { name?: string; mesh?: number }[];
   meshes?: { primitives: Primitive[] }[];
   accessors?: Accessor[];
   bufferViews?: { byteOffset?: number; byteLength: number }[];
 }
-export interface Glb { readonly json: GlbJson; readonly binary: ArrayBuffer }
+export interface Glb {
+  readonly json: GlbJson;
+  readonly binary: ArrayBuffer;
+}
 
 const MAGIC = 0x46546c67;
 
@@ -20,7 +31,10 @@ export function readGlb(file: ArrayBuffer): Glb {
   const jsonBytes = view.getUint32(12, true);
   const json = JSON.parse(new TextDecoder().decode(new Uint8Array(file, 20, jsonBytes))) as GlbJson;
   const binaryAt = 20 + jsonBytes;
-  return { json, binary: binaryAt + 8 <= file.byteLength ? file.slice(binaryAt + 8, binaryAt + 8 + view.getUint32(binaryAt, true)) : new ArrayBuffer(0) };
+  return {
+    json,
+    binary: binaryAt + 8 <= file.byteLength ? file.slice(binaryAt + 8, binaryAt + 8 + view.getUint32(binaryAt, true)) : new ArrayBuffer(0),
+  };
 }
 
 /// Indices of an accessor, in its own type.

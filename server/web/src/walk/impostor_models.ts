@@ -5,7 +5,8 @@ import type { GLTF } from "three/addons/loaders/GLTFLoader.js";
 
 import type { Placement } from "../runtime/placement";
 
-const PLAIN = new THREE.Color(1, 1, 1), MARKED = new THREE.Color(1, 0.45, 0.85);
+const PLAIN = new THREE.Color(1, 1, 1),
+  MARKED = new THREE.Color(1, 0.45, 0.85);
 
 function asStored(texture: THREE.Texture): void {
   texture.colorSpace = THREE.NoColorSpace;

@@ -10,13 +10,18 @@ import { shadedMaterial } from "./shaded_material";
 
 /// What one level of an object draws: per mesh a geometry; none: the mesh is not part of the level.
 export type Form = readonly (THREE.BufferGeometry | null)[];
-export interface ObjectModel { readonly meshes: readonly THREE.Mesh[]; readonly forms: readonly Form[] }
+export interface ObjectModel {
+  readonly meshes: readonly THREE.Mesh[];
+  readonly forms: readonly Form[];
+}
 export interface ObjectModels {
   readonly models: readonly (ObjectModel | null)[]; // per object id
   readonly missing: readonly SceneObject[]; // not found in the scene file
 }
 
-interface PlacementSpec { spec?: { scene?: { split_triangles?: number; split_extent?: number } } }
+interface PlacementSpec {
+  spec?: { scene?: { split_triangles?: number; split_extent?: number } };
+}
 
 const PIECE = /^(.*)#(\d+)$/;
 
@@ -26,7 +31,8 @@ function withTriangles(geometry: THREE.BufferGeometry, corners: ArrayLike<number
   for (const [name, attribute] of Object.entries(geometry.attributes)) part.setAttribute(name, attribute);
   part.setIndex(new THREE.BufferAttribute(corners instanceof Uint16Array ? corners : Uint32Array.from(corners), 1));
   const sphere = new THREE.Box3();
-  const point = new THREE.Vector3(), position = geometry.getAttribute("position") as THREE.BufferAttribute;
+  const point = new THREE.Vector3(),
+    position = geometry.getAttribute("position") as THREE.BufferAttribute;
   for (let i = 0; i < corners.length; ++i) sphere.expandByPoint(point.fromBufferAttribute(position, corners[i]!));
   part.boundingSphere = sphere.getBoundingSphere(new THREE.Sphere());
   return part;
@@ -41,13 +47,20 @@ class Builder {
   private readonly diagonal: number;
   readonly models: (ObjectModel | null)[];
 
-  constructor(private readonly placement: Placement, private readonly lods: Glb | null) {
+  constructor(
+    private readonly placement: Placement,
+    private readonly lods: Glb | null,
+  ) {
     this.models = placement.scene.objects.map(() => null);
     const bounds = new THREE.Box3();
     for (const object of placement.scene.objects) bounds.union(boxOf(object));
     this.diagonal = bounds.getSize(new THREE.Vector3()).length();
     lods?.json.nodes?.forEach((node, id) => this.levelNodes.set(node.name ?? "", id));
-    for (const { object, levels } of placement.lods?.objects ?? []) this.levelsOf.set(object, levels.map((level) => level.gltf_node));
+    for (const { object, levels } of placement.lods?.objects ?? [])
+      this.levelsOf.set(
+        object,
+        levels.map((level) => level.gltf_node),
+      );
   }
 
   /// Nodes and objects come in the same order; the program dropped nodes that have no counterpart. Where names do not tell, bounds do.
@@ -135,8 +148,12 @@ class Builder {
     for (let k = 0; k < count; ++k) {
       const piece = pieces[k];
       if (piece === undefined || pieces.length !== count) return;
-      const parts = piece.map(({ part, corners }) => ({ ...node.parts[part]!, geometry: withTriangles(node.parts[part]!.geometry, corners) }));
-      if (this.same(boxOf(this.placement.scene.objects[first + k]!), boundsOf(parts, node.worldFromNode))) this.models[first + k] = this.model(node, first + k, parts);
+      const parts = piece.map(({ part, corners }) => ({
+        ...node.parts[part]!,
+        geometry: withTriangles(node.parts[part]!.geometry, corners),
+      }));
+      if (this.same(boxOf(this.placement.scene.objects[first + k]!), boundsOf(parts, node.worldFromNode)))
+        this.models[first + k] = this.model(node, first + k, parts);
     }
   }
 
@@ -146,7 +163,11 @@ class Builder {
     const key = `${node.mesh} ${scale.toArray().join(" ")}`;
     const known = this.splits.get(key);
     if (known !== undefined) return known;
-    const pieces = splitIntoPieces(node.parts.map((part) => part.geometry), [scale.x, scale.y, scale.z], { triangles: split_triangles, extent: split_extent * this.diagonal });
+    const pieces = splitIntoPieces(
+      node.parts.map((part) => part.geometry),
+      [scale.x, scale.y, scale.z],
+      { triangles: split_triangles, extent: split_extent * this.diagonal },
+    );
     this.splits.set(key, pieces);
     return pieces;
   }
@@ -155,7 +176,9 @@ class Builder {
 const boxOf = ({ bounds: { min, max } }: SceneObject) => new THREE.Box3(new THREE.Vector3(...min), new THREE.Vector3(...max));
 
 function cornerBounds(geometry: THREE.BufferGeometry, corners: ArrayLike<number>, matrix: THREE.Matrix4): THREE.Box3 {
-  const box = new THREE.Box3(), point = new THREE.Vector3(), position = geometry.getAttribute("position") as THREE.BufferAttribute;
+  const box = new THREE.Box3(),
+    point = new THREE.Vector3(),
+    position = geometry.getAttribute("position") as THREE.BufferAttribute;
   for (let i = 0; i < corners.length; ++i) box.expandByPoint(point.fromBufferAttribute(position, corners[i]!).applyMatrix4(matrix));
   return box;
 }

@@ -4,8 +4,14 @@
 
 import * as THREE from "three";
 
-export interface SplitLimits { readonly triangles: number; readonly extent: number } // 0: any
-export interface PiecePart { readonly part: number; readonly corners: Uint32Array }
+export interface SplitLimits {
+  readonly triangles: number;
+  readonly extent: number;
+} // 0: any
+export interface PiecePart {
+  readonly part: number;
+  readonly corners: Uint32Array;
+}
 export type Piece = readonly PiecePart[];
 
 const LIGHTEST = 500;
@@ -38,7 +44,8 @@ class Triangles {
 
   /// Extents of the triangles' corners.
   size(ids: Uint32Array): [number, number, number] {
-    const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
+    const low = [Infinity, Infinity, Infinity],
+      high = [-Infinity, -Infinity, -Infinity];
     for (const id of ids) {
       const position = this.geometries[this.part[id]!]!.getAttribute("position");
       for (let corner = 0; corner < 3; ++corner)
@@ -52,7 +59,8 @@ class Triangles {
   }
 
   centroidSize(ids: Uint32Array): [number, number, number] {
-    const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
+    const low = [Infinity, Infinity, Infinity],
+      high = [-Infinity, -Infinity, -Infinity];
     for (const id of ids)
       for (let axis = 0; axis < 3; ++axis) {
         low[axis] = Math.min(low[axis]!, this.centroid[3 * id + axis]!);
@@ -81,7 +89,11 @@ function piece(triangles: Triangles, ids: Uint32Array): Piece {
 }
 
 /// `scale`: lengths of the object's axes in the world, of the largest instance that is split. Geometries need an index.
-export function splitIntoPieces(geometries: readonly THREE.BufferGeometry[], scale: readonly [number, number, number], limits: SplitLimits): Piece[] {
+export function splitIntoPieces(
+  geometries: readonly THREE.BufferGeometry[],
+  scale: readonly [number, number, number],
+  limits: SplitLimits,
+): Piece[] {
   const triangles = new Triangles(geometries);
   const scaled = (size: readonly number[]) => size.map((value, axis) => value * scale[axis]!);
   const pieces: Piece[] = [];

@@ -4,7 +4,11 @@
 import * as THREE from "three";
 import type { GLTF } from "three/addons/loaders/GLTFLoader.js";
 
-export interface ScenePart { readonly geometry: THREE.BufferGeometry; readonly material: THREE.Material; readonly primitive: number }
+export interface ScenePart {
+  readonly geometry: THREE.BufferGeometry;
+  readonly material: THREE.Material;
+  readonly primitive: number;
+}
 export interface SceneNode {
   readonly name: string; // "" where the file has none
   readonly mesh: number;
@@ -13,14 +17,27 @@ export interface SceneNode {
 }
 
 interface NodeJson {
-  name?: string; mesh?: number; children?: number[]; matrix?: number[]; translation?: number[]; rotation?: number[]; scale?: number[];
+  name?: string;
+  mesh?: number;
+  children?: number[];
+  matrix?: number[];
+  translation?: number[];
+  rotation?: number[];
+  scale?: number[];
   extensions?: { EXT_mesh_gpu_instancing?: { attributes: Record<string, number> }; MSFT_lod?: { ids?: number[] } };
 }
-interface SceneJson { scene?: number; scenes?: { nodes?: number[] }[]; nodes?: NodeJson[]; meshes?: { primitives: unknown[] }[] }
+interface SceneJson {
+  scene?: number;
+  scenes?: { nodes?: number[] }[];
+  nodes?: NodeJson[];
+  meshes?: { primitives: unknown[] }[];
+}
 
 function parentFromNode(node: NodeJson): THREE.Matrix4 {
   if (node.matrix !== undefined) return new THREE.Matrix4().fromArray(node.matrix);
-  const [t = 0, u = 0, v = 0] = node.translation ?? [], [x = 0, y = 0, z = 0, w = 1] = node.rotation ?? [], [a = 1, b = 1, c = 1] = node.scale ?? [];
+  const [t = 0, u = 0, v = 0] = node.translation ?? [],
+    [x = 0, y = 0, z = 0, w = 1] = node.rotation ?? [],
+    [a = 1, b = 1, c = 1] = node.scale ?? [];
   return new THREE.Matrix4().compose(new THREE.Vector3(t, u, v), new THREE.Quaternion(x, y, z, w).normalize(), new THREE.Vector3(a, b, c));
 }
 
@@ -53,7 +70,8 @@ class NodeWalk {
       const parts = await this.partsOf(node.mesh);
       const places = await this.instances(node);
       if (parts.length > 0)
-        for (const place of places) this.found.push({ name: node.name ?? "", mesh: node.mesh, parts, worldFromNode: worldFromNode.clone().multiply(place) });
+        for (const place of places)
+          this.found.push({ name: node.name ?? "", mesh: node.mesh, parts, worldFromNode: worldFromNode.clone().multiply(place) });
     }
     for (const child of node.children ?? []) await this.visit(child, worldFromNode);
   }
@@ -71,7 +89,13 @@ class NodeWalk {
     const primitives = this.json.meshes![mesh]!.primitives.length === 1 ? [loaded] : loaded.children;
     return primitives.flatMap((primitive, index) => {
       if (!(primitive instanceof THREE.Mesh)) return []; // points and lines
-      return [{ geometry: prepared(primitive.geometry as THREE.BufferGeometry), material: primitive.material as THREE.Material, primitive: index }];
+      return [
+        {
+          geometry: prepared(primitive.geometry as THREE.BufferGeometry),
+          material: primitive.material as THREE.Material,
+          primitive: index,
+        },
+      ];
     });
   }
 
@@ -87,7 +111,10 @@ class NodeWalk {
     return Array.from({ length: count }, (_, i) => {
       const at = (attribute: THREE.BufferAttribute | null, otherwise: number) =>
         attribute === null ? new THREE.Vector3().setScalar(otherwise) : new THREE.Vector3().fromBufferAttribute(attribute, i);
-      const rotation = rotations === null ? new THREE.Quaternion() : new THREE.Quaternion().fromArray([0, 1, 2, 3].map((k) => rotations.getComponent(i, k))).normalize();
+      const rotation =
+        rotations === null
+          ? new THREE.Quaternion()
+          : new THREE.Quaternion().fromArray([0, 1, 2, 3].map((k) => rotations.getComponent(i, k))).normalize();
       return new THREE.Matrix4().compose(at(translations, 0), rotation, at(scales, 1));
     });
   }

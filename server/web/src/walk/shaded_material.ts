@@ -39,11 +39,16 @@ export function shadedMaterial(loaded: Loaded): THREE.ShaderMaterial {
   map?.updateMatrix();
   const { r, g, b } = (loaded.color ?? new THREE.Color(1, 1, 1)).clone().convertLinearToSRGB();
   return new THREE.ShaderMaterial({
-    vertexShader: VERTEX, fragmentShader: FRAGMENT, side: loaded.side,
+    vertexShader: VERTEX,
+    fragmentShader: FRAGMENT,
+    side: loaded.side,
     defines: map === null ? {} : { TEXTURED: "" },
     uniforms: {
-      baseColour: { value: new THREE.Vector4(r, g, b, loaded.opacity) }, map: { value: map }, uvTransform: { value: map?.matrix ?? new THREE.Matrix3() },
-      alphaCutoff: { value: loaded.alphaTest }, lit: { value: !(loaded instanceof THREE.MeshBasicMaterial) },
+      baseColour: { value: new THREE.Vector4(r, g, b, loaded.opacity) },
+      map: { value: map },
+      uvTransform: { value: map?.matrix ?? new THREE.Matrix3() },
+      alphaCutoff: { value: loaded.alphaTest },
+      lit: { value: !(loaded instanceof THREE.MeshBasicMaterial) },
     },
   });
 }

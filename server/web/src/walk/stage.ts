@@ -7,7 +7,10 @@ import type { Placement, Vector } from "../runtime/placement";
 import type { ImpostorModels } from "./impostor_models";
 import type { ObjectModels } from "./object_models";
 
-export interface FrameCost { readonly draws: number; readonly triangles: number }
+export interface FrameCost {
+  readonly draws: number;
+  readonly triangles: number;
+}
 
 export class Stage {
   readonly camera: THREE.PerspectiveCamera;
@@ -15,7 +18,12 @@ export class Stage {
   private readonly scene = new THREE.Scene();
   private readonly frustum = new THREE.Frustum();
 
-  constructor(readonly canvas: HTMLCanvasElement, placement: Placement, private readonly objects: ObjectModels, private readonly impostors: ImpostorModels) {
+  constructor(
+    readonly canvas: HTMLCanvasElement,
+    placement: Placement,
+    private readonly objects: ObjectModels,
+    private readonly impostors: ImpostorModels,
+  ) {
     this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true });
     this.renderer.outputColorSpace = THREE.LinearSRGBColorSpace; // colours are encoded already (shaded_material.ts)
     this.renderer.setClearColor(new THREE.Color(0.62, 0.71, 0.79));
@@ -34,7 +42,11 @@ export class Stage {
 
   look(position: Vector, direction: Vector): void {
     this.camera.position.set(...position);
-    this.camera.up.set(0, Math.abs(direction[1]) > 0.999 * Math.hypot(...direction) ? 0 : 1, Math.abs(direction[1]) > 0.999 * Math.hypot(...direction) ? 1 : 0);
+    this.camera.up.set(
+      0,
+      Math.abs(direction[1]) > 0.999 * Math.hypot(...direction) ? 0 : 1,
+      Math.abs(direction[1]) > 0.999 * Math.hypot(...direction) ? 1 : 0,
+    );
     this.camera.lookAt(position[0] + direction[0], position[1] + direction[1], position[2] + direction[2]);
     this.camera.updateMatrixWorld();
   }
@@ -63,8 +75,11 @@ export class Stage {
 
   /// What drawing a view's content costs, without drawing it: what lies in the camera's frustum.
   cost(content: ViewContent): FrameCost {
-    this.frustum.setFromProjectionMatrix(new THREE.Matrix4().multiplyMatrices(this.camera.projectionMatrix, this.camera.matrixWorldInverse));
-    let draws = 0, triangles = 0;
+    this.frustum.setFromProjectionMatrix(
+      new THREE.Matrix4().multiplyMatrices(this.camera.projectionMatrix, this.camera.matrixWorldInverse),
+    );
+    let draws = 0,
+      triangles = 0;
     const add = (geometry: THREE.BufferGeometry, worldFromMesh: THREE.Matrix4) => {
       if (geometry.boundingSphere === null) geometry.computeBoundingSphere();
       if (!this.frustum.intersectsSphere(geometry.boundingSphere!.clone().applyMatrix4(worldFromMesh))) return;

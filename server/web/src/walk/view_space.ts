@@ -11,7 +11,8 @@ export class WalkableSpace {
 
   /// The point of the view space nearest to `point`.
   nearest(point: Vector): Vector {
-    let best: Vector = point, least = Infinity;
+    let best: Vector = point,
+      least = Infinity;
     for (const box of this.placement.view_space.boxes) {
       const inside = clamped(point, box);
       const distance = squareDistance(inside, point);
