@@ -183,18 +183,19 @@ struct FaceAngles {
 /// The CPV of a cell that holds a direction, whose length does not matter.
 [[nodiscard]] inline std::optional<std::uint32_t> find_cpv(const PlacementView& placement, std::uint32_t cell,
                                                            const LookupVector& direction) {
-  const auto cpvs = std::ranges::equal_range(placement.cpvs, cell, {}, &LookupCpv::cell);
-  if (cpvs.empty()) return std::nullopt;
+  const auto first = std::lower_bound(placement.cpvs.begin(), placement.cpvs.end(), LookupCpv{cell, 0});
+  if (first == placement.cpvs.end() || first->cell != cell) return std::nullopt;
   const auto angles = face_angles(direction);
   if (!angles) return std::nullopt;
   for (int level = kDeepestIntervalLevel; level >= 0; --level) {
     if ((placement.interval_levels >> level & 1) == 0) continue;
     const LookupInterval wanted{angles->face, level, {angle_slot(angles->a_rad, level), angle_slot(angles->b_rad, level)}};
-    const auto interval = std::ranges::lower_bound(placement.intervals, wanted);
+    const auto interval = std::lower_bound(placement.intervals.begin(), placement.intervals.end(), wanted);
     if (interval == placement.intervals.end() || *interval != wanted) continue;
     const auto id = static_cast<std::uint32_t>(interval - placement.intervals.begin());
-    const auto cpv = std::ranges::lower_bound(cpvs, id, {}, &LookupCpv::interval);
-    if (cpv != cpvs.end() && cpv->interval == id) return static_cast<std::uint32_t>(cpv - placement.cpvs.begin());
+    const LookupCpv sought{cell, id};
+    const auto cpv = std::lower_bound(first, placement.cpvs.end(), sought);
+    if (cpv != placement.cpvs.end() && *cpv == sought) return static_cast<std::uint32_t>(cpv - placement.cpvs.begin());
   }
   return std::nullopt;
 }
@@ -215,7 +216,8 @@ struct FaceAngles {
     const double gap = std::max(std::max(cell_min[axis] - object_max[axis], object_min[axis] - cell_max[axis]), 0.0);
     square += gap * gap;
   }
-  return static_cast<std::size_t>(std::ranges::upper_bound(least_distance_m, std::sqrt(square)) - least_distance_m.begin());
+  return static_cast<std::size_t>(std::upper_bound(least_distance_m.begin(), least_distance_m.end(), std::sqrt(square)) -
+                                  least_distance_m.begin());
 }
 
 }  // namespace standin
