@@ -16,7 +16,7 @@ export async function openBrowser() {
     async newPage(url) {
       const page = await browser.newPage();
       const faults = [];
-      page.on("console", (message) => ["error", "warn"].includes(message.type()) && faults.push(message.text()));
+      page.on("console", (message) => ["error", "warn"].includes(message.type()) && faults.push(`${message.text()} ${message.location().url ?? ""}`));
       page.on("pageerror", (error) => faults.push(error.message));
       await page.setViewport({ width: 1280, height: 900 });
       await page.setBypassCSP(true); // for axe, which is put into the page
