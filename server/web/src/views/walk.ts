@@ -74,7 +74,7 @@ class Walk {
     "aria-describedby": "walk-help",
   });
   private readonly panel = element("div", { class: "panel", "aria-live": "off" });
-  private readonly status = element("p", { class: "soft", role: "status" });
+  private readonly status = element("p", { class: "soft status", role: "status" });
   private readonly lookup: PlacementLookup;
   private readonly content: PlacementContent;
   private readonly space: WalkableSpace;
