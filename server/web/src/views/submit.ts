@@ -115,7 +115,7 @@ class SubmitForm {
   constructor(choices: Choices, signal: AbortSignal) {
     this.scene = new FileChoice(
       "scene",
-      "glTF or GLB; also OBJ, PLY, STL and others, through which the page cannot walk",
+      "GLB, through which the page can walk; glTF, OBJ, PLY, STL and others; several files of one scene as a ZIP archive",
       choices.scenes,
       signal,
     );
