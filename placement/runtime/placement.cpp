@@ -21,7 +21,7 @@ CellLocator locate_cells(const Placement& placement) {
     keys.push_back(cell.key);
     boxes.push_back(cell.box);
   }
-  return {{placement.root_min, placement.root_side_m}, std::move(keys), std::move(boxes)};
+  return {{placement.root_min, placement.root_side_m}, keys, boxes};
 }
 
 void check_cpvs(const Placement& placement) {
@@ -63,8 +63,8 @@ std::vector<std::uint8_t> levels_of(const Placement& placement, const Lookup& lo
 }  // namespace
 
 std::uint8_t PlacementLevels::level_from(const Box& cell) const {
-  const double distance_m = distance(cell, bounds);
-  return static_cast<std::uint8_t>(std::ranges::upper_bound(least_distance_m, distance_m) - least_distance_m.begin());
+  return static_cast<std::uint8_t>(level_shown(lookup_vector(cell.min), lookup_vector(cell.max), lookup_vector(bounds.min),
+                                               lookup_vector(bounds.max), least_distance_m));
 }
 
 std::vector<PlacementLevels> placement_levels(const Scene& scene) {
@@ -78,41 +78,24 @@ std::vector<PlacementLevels> placement_levels(const Scene& scene) {
   return all;
 }
 
-PlacementIndex::PlacementIndex(const Placement& placement) : placement_(&placement), cells_(locate_cells(placement)) {
+PlacementIndex::PlacementIndex(const Placement& placement) : cells_(locate_cells(placement)) {
   for (std::size_t i = 0; i < placement.intervals.size(); ++i) {
-    require(i == 0 || placement.intervals[i - 1] < placement.intervals[i], "interval", i, "does not follow its predecessor");
-    interval_levels_.push_back(placement.intervals[i].level);
+    const DirectionInterval& interval = placement.intervals[i];
+    require(i == 0 || placement.intervals[i - 1] < interval, "interval", i, "does not follow its predecessor");
+    require(0 <= interval.level && interval.level <= kDeepestIntervalLevel, "interval", i, "has an impossible level");
+    intervals_.push_back({static_cast<int>(interval.face), interval.level, {interval.i, interval.j}});
   }
-  std::sort(interval_levels_.rbegin(), interval_levels_.rend());
-  interval_levels_.erase(std::unique(interval_levels_.begin(), interval_levels_.end()), interval_levels_.end());
+  interval_levels_ = levels_in_use(intervals_);
   check_cpvs(placement);
-  cpv_offset_.assign(placement.cells.size() + 1, 0);
-  for (const PlacementCpv& cpv : placement.cpvs) {
-    ++cpv_offset_[cpv.cell + 1];
-    cpv_interval_.push_back(cpv.interval);
-  }
-  std::partial_sum(cpv_offset_.begin(), cpv_offset_.end(), cpv_offset_.begin());
+  for (const PlacementCpv& cpv : placement.cpvs) cpvs_.push_back({cpv.cell, cpv.interval});
 }
 
 Lookup PlacementIndex::find(const Vec3& position, const Vec3& direction) const {
-  Lookup lookup;
-  lookup.cell = cells_.find(position);
-  if (!lookup.cell) return lookup;
-  const auto first = cpv_interval_.begin() + cpv_offset_[*lookup.cell];
-  const auto last = cpv_interval_.begin() + cpv_offset_[*lookup.cell + 1];
-  if (first == last) return lookup;
-  const auto& intervals = placement_->intervals;
-  for (const int level : interval_levels_) {
-    const DirectionInterval wanted = interval_of(direction, level);
-    const auto interval = std::lower_bound(intervals.begin(), intervals.end(), wanted);
-    if (interval == intervals.end() || *interval != wanted) continue;
-    const auto id = static_cast<std::uint32_t>(interval - intervals.begin());
-    const auto cpv = std::lower_bound(first, last, id);
-    if (cpv == last || *cpv != id) continue;
-    lookup.cpv = static_cast<std::uint32_t>(cpv - cpv_interval_.begin());
-    return lookup;
-  }
-  return lookup;
+  PlacementView view = cells_.view();
+  view.intervals = intervals_;
+  view.cpvs = cpvs_;
+  view.interval_levels = interval_levels_;
+  return find_cell(view, lookup_vector(position), lookup_vector(direction));
 }
 
 ViewContent content_of(const Placement& placement, const Lookup& lookup, std::uint32_t object_count) {

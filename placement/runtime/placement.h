@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -67,27 +66,20 @@ struct Placement {
   double root_side_m = 0.0;
 };
 
-/// What to draw for one view.
-struct Lookup {
-  std::optional<std::uint32_t> cell;  // none: outside the view space
-  std::optional<std::uint32_t> cpv;   // none: originals only
-};
-
-/// Built once per placement, which must outlive it; find() allocates nothing and may be called from several threads. Intervals and cells
-/// are half-open at the upper end, the last one closed (cell_locator.h, direction_interval.h).
+/// A placement in the form of the lookup that ships (runtime/placement_lookup.h). find() allocates nothing and may be called from several
+/// threads.
 class PlacementIndex {
  public:
   /// Throws Failure(kFileBroken) naming the entry when cells, intervals or CPVs are out of order or refer to nothing.
   explicit PlacementIndex(const Placement& placement);
-  /// `direction` must not be zero; its length does not matter.
+  /// The direction's length does not matter; one without length has no CPV.
   [[nodiscard]] Lookup find(const Vec3& position, const Vec3& direction) const;
 
  private:
-  const Placement* placement_;
   CellLocator cells_;
-  std::vector<int> interval_levels_;         // those in use, finest first
-  std::vector<std::uint32_t> cpv_offset_;    // per cell + 1
-  std::vector<std::uint32_t> cpv_interval_;  // per CPV, packed for the search
+  std::vector<LookupInterval> intervals_;
+  std::vector<LookupCpv> cpvs_;
+  std::uint32_t interval_levels_ = 0;
 };
 
 /// Objects to draw as originals and impostors to draw, for a lookup's answer. `object_count` of the scene.

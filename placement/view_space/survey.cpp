@@ -35,7 +35,7 @@ CellLocator locate_cells(const ViewSpace& space, const Subdivision& subdivision)
     keys.push_back(cell.key);
     boxes.push_back(cell.box);
   }
-  return {space.grid(), std::move(keys), std::move(boxes)};
+  return {space.grid(), keys, boxes};
 }
 
 class Surveyor {

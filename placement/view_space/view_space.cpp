@@ -7,6 +7,7 @@
 #include "placement/view_space/cell_boxes.h"
 #include "placement/view_space/number_text.h"
 #include "render/base/error.h"
+#include "runtime/placement_lookup.h"
 
 namespace standin {
 namespace {
@@ -68,22 +69,14 @@ Box DyadicGrid::cube(const CellKey& key) const {
   Box box;
   for (int axis = 0; axis < 3; ++axis) {
     const int i = key.index[static_cast<std::size_t>(axis)];
-    box.min[axis] = root_min[axis] + side * i;
-    box.max[axis] = root_min[axis] + side * (i + 1);
+    box.min[axis] = slab_border(root_min[axis], side, i);
+    box.max[axis] = slab_border(root_min[axis], side, i + 1);
   }
   return box;
 }
 
 int DyadicGrid::index_at(double coordinate, int axis, int level) const {
-  const double side = std::ldexp(root_side_m, -level);
-  const int count = 1 << level;
-  const auto border = [&](int i) { return root_min[axis] + side * i; };
-  if (!(coordinate >= border(0))) return -1;
-  if (coordinate >= border(count)) return count;
-  int index = std::clamp(static_cast<int>((coordinate - root_min[axis]) / side), 0, count - 1);
-  while (coordinate < border(index)) --index;
-  while (coordinate >= border(index + 1)) ++index;
-  return index;
+  return slab_of(coordinate, root_min[axis], root_side_m, level);
 }
 
 Box part_inside(const Box& box, const DyadicGrid& grid, const CellKey& key) {

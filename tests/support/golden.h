@@ -15,16 +15,21 @@
 
 namespace standin::test {
 
-[[nodiscard]] inline nlohmann::json golden_cases(const std::string& file) {
+/// The whole file; null when it is missing, which fails.
+[[nodiscard]] inline nlohmann::json golden_file(const std::string& file) {
   const char* folder = std::getenv("STANDIN_GOLDEN_DIR");
   const std::string path = std::string(folder != nullptr ? folder : STANDIN_SOURCE_DIR "/tests/golden") + "/" + file;
   std::ifstream stream(path);
-  if (!stream) {
-    ADD_FAILURE() << "golden file missing: " << path;
-    return nlohmann::json::array();
-  }
-  const auto cases = nlohmann::json::parse(stream).at("cases");
-  EXPECT_FALSE(cases.empty()) << path << " holds no case";
+  if (stream) return nlohmann::json::parse(stream);
+  ADD_FAILURE() << "golden file missing: " << path;
+  return nullptr;
+}
+
+[[nodiscard]] inline nlohmann::json golden_cases(const std::string& file) {
+  const auto whole = golden_file(file);
+  if (whole.is_null()) return nlohmann::json::array();
+  const auto& cases = whole.at("cases");
+  EXPECT_FALSE(cases.empty()) << file << " holds no case";
   std::printf("%zu cases of %s\n", cases.size(), file.c_str());
   return cases;
 }

@@ -44,6 +44,12 @@ TEST(House, IncludesOnlyPointDown) {
   EXPECT_GT(seen, 100U);
 }
 
+TEST(House, WhatEnginesTakeNeedsTheStandardLibraryAlone) {
+  const auto includes = includes_of("runtime");
+  EXPECT_FALSE(includes.empty());
+  for (const auto& include : includes) EXPECT_EQ(include.header.find_first_of("./"), std::string::npos) << include.header;
+}
+
 TEST(House, HeavyPackagesStayInTheirRooms) {
   const std::vector<std::pair<std::string, std::string>> rooms = {
       {"embree", "render/visibility/"},           {"OpenImageIO", "render/image/"}, {"ceres", "estimation/robust_fit.cpp"},
