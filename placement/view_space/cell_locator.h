@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "placement/view_space/view_space.h"
-#include "runtime/placement_lookup.h"
+#include "render/base/placement_lookup.h"
 
 namespace standin {
 

@@ -7,7 +7,7 @@
 #include "placement/view_space/cell_boxes.h"
 #include "placement/view_space/number_text.h"
 #include "render/base/error.h"
-#include "runtime/placement_lookup.h"
+#include "render/base/placement_lookup.h"
 
 namespace standin {
 namespace {

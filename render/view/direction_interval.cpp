@@ -4,7 +4,7 @@
 #include <string>
 
 #include "render/base/error.h"
-#include "runtime/placement_lookup.h"
+#include "render/base/placement_lookup.h"
 
 namespace standin {
 namespace {

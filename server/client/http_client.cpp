@@ -25,7 +25,10 @@ struct Close {
   void operator()(std::FILE* file) const { std::fclose(file); }
 };
 
+constexpr std::size_t kMostBytes = 64 << 20;  // of an answer that is kept in memory
+
 size_t append(char* data, size_t, size_t size, void* text) {
+  if (static_cast<std::string*>(text)->size() > kMostBytes) return 0;
   static_cast<std::string*>(text)->append(data, size);
   return size;
 }

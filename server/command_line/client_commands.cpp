@@ -27,6 +27,16 @@ HttpClient client_of(const CommandContext& context) {
   return {context.arguments.client.server, token == nullptr ? "" : token};
 }
 
+// What a server says of itself is believed as far as it has the shape that it should.
+template <class Read>
+auto from_server(Read&& read) {
+  try {
+    return read();
+  } catch (const json::exception& error) {
+    throw Failure(ErrorWord::kServerUnreachable, std::string("the server's answer is not that of a Standin service: ") + error.what());
+  }
+}
+
 json job_document(const HttpClient& client, const std::string& id, const WorkBudget& budget) {
   return body_or_failure(client.get("/v1/jobs/" + HttpClient::escaped(id), budget));
 }
@@ -38,19 +48,6 @@ json uploaded(const HttpClient& client, const fs::path& file, const WorkBudget& 
     if (upload.at("sha256") == sha256 && upload.at("name") == name) return {{"upload", upload.at("id")}};
   budget.report("upload", 0.0);
   return {{"upload", body_or_failure(client.post_file("/v1/uploads?name=" + HttpClient::escaped(name), file, budget)).at("id")}};
-}
-
-// Settings that are not the defaults.
-json settings_of(const JobSpec& spec) {
-  const json defaults = to_json(JobSpec{}, false);
-  json changed = json::object();
-  for (const SpecField& field : spec_fields()) {
-    std::string path = "/" + field.key;
-    for (char& c : path) c = c == '.' ? '/' : c;
-    const json::json_pointer pointer(path);
-    if (field.get(spec) != defaults.at(pointer)) changed[pointer] = field.get(spec);
-  }
-  return changed;
 }
 
 json arguments_of(const CommandArguments& arguments, const std::string& kind) {
@@ -65,7 +62,7 @@ json arguments_of(const CommandArguments& arguments, const std::string& kind) {
 json request_of(const CommandContext& context, const HttpClient& http) {
   const CommandArguments& arguments = context.arguments;
   const ClientArguments& client = arguments.client;
-  json request = {{"kind", client.kind}, {"spec", settings_of(context.spec)}, {"arguments", arguments_of(arguments, client.kind)}};
+  json request = {{"kind", client.kind}, {"spec", changed_settings(context.spec)}, {"arguments", arguments_of(arguments, client.kind)}};
   if (!client.label.empty()) request["label"] = client.label;
   if (!client.job.empty()) request["job"] = client.job;
   if (!client.scene_name.empty()) request["scene"] = {{"name", client.scene_name}};
@@ -110,11 +107,11 @@ void fetch_into(const HttpClient& client, const json& job, const fs::path& folde
     const std::string path = artifact.at("path");
     if (path.find('/') != std::string::npos || path.starts_with('.'))
       throw Failure(ErrorWord::kUriForbidden, "artifact " + path + " leaves the folder");
-    const Answer answer = client.get(artifact.at("href"), budget);
-    if (answer.status != 200) body_or_failure(answer);
-    if (sha256_hex(answer.body) != artifact.at("sha256"))
+    const fs::path file = output.path_of(path);
+    const Answer answer = client.download("/v1/jobs/" + HttpClient::escaped(id) + "/artifacts/" + HttpClient::escaped(path), file, budget);
+    if (answer.status != 200) (void)body_or_failure(answer);
+    if (sha256_hex(read_file(file)) != artifact.at("sha256"))
       throw Failure(ErrorWord::kFileBroken, "artifact " + path + " came with other bytes than its SHA-256 says");
-    output.write(path, answer.body);
   }
   output.commit();
 }
@@ -132,9 +129,7 @@ void print_job(const json& job, bool as_json) {
   std::printf("\n");
 }
 
-}  // namespace
-
-int submit_command(const CommandContext& context) {
+int submit(const CommandContext& context) {
   const HttpClient client = client_of(context);
   json job = body_or_failure(client.post_json("/v1/jobs", request_of(context, client), {}, context.budget));
   const std::string id = job.at("id");
@@ -149,7 +144,7 @@ int submit_command(const CommandContext& context) {
   return exit_code;
 }
 
-int status_command(const CommandContext& context) {
+int status(const CommandContext& context) {
   const HttpClient client = client_of(context);
   const std::string& id = context.arguments.client.job;
   const json job = context.arguments.client.wait ? wait_for(client, id, context.budget) : job_document(client, id, context.budget);
@@ -157,19 +152,37 @@ int status_command(const CommandContext& context) {
   return ended(job) ? exit_code_of(job) : 0;
 }
 
-int fetch_command(const CommandContext& context) {
+int fetch(const CommandContext& context) {
   const HttpClient client = client_of(context);
   const json job = job_document(client, context.arguments.client.job, context.budget);
   fetch_into(client, job, context.arguments.output, context.budget);
   return exit_code_of(job);
 }
 
-int cancel_command(const CommandContext& context) {
+int cancel(const CommandContext& context) {
   const HttpClient client = client_of(context);
   print_job(body_or_failure(client.post_json("/v1/jobs/" + HttpClient::escaped(context.arguments.client.job) + "/cancel", json::object(),
                                              {}, context.budget)),
             context.arguments.json);
   return 0;
+}
+
+}  // namespace
+
+int submit_command(const CommandContext& context) {
+  return from_server([&] { return submit(context); });
+}
+
+int status_command(const CommandContext& context) {
+  return from_server([&] { return status(context); });
+}
+
+int fetch_command(const CommandContext& context) {
+  return from_server([&] { return fetch(context); });
+}
+
+int cancel_command(const CommandContext& context) {
+  return from_server([&] { return cancel(context); });
 }
 
 }  // namespace standin

@@ -20,6 +20,7 @@ struct ServiceArguments {
   std::string tokens;
   std::string scenes;
   std::string targets;
+  std::string presets;
   std::string web;  // empty: beside the program
   std::uint32_t workers = 1;
   std::uint32_t queue = 100;

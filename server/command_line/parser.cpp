@@ -237,11 +237,13 @@ void add_service_commands(Grammar& grammar) {
   option("--tokens", service.tokens, "file of lines OWNER SHA256-OF-TOKEN; each owner sees the own jobs only");
   option("--scenes", service.scenes, "folder of scenes that clients may name");
   option("--targets", service.targets, "folder of target files that clients may name");
+  option("--presets", service.presets, "folder of configuration files (TOML) that the page offers");
   option("--web", service.web, "folder of the page; default: web, beside the program");
   option("--workers", service.workers, "jobs that run at a time")->check(CLI::Range(1, 64));
   option("--queue", service.queue, "jobs that may wait")->check(CLI::Range(1, 1'000'000));
   option("--attempts", service.attempts, "workers that may be lost before a job fails")->check(CLI::Range(1, 1000));
-  option("--deadline-minutes", service.deadline_minutes, "that a job may take; 0: as long as it takes")->check(CLI::Range(0.0, 1e6));
+  option("--deadline-minutes", service.deadline_minutes, "that one attempt at a job may take; 0: as long as it takes")
+      ->check(CLI::Range(0.0, 1e6));
   option("--keep-days", service.keep_days, "from a job's end to its removal; 0: for ever")->check(CLI::Range(0.0, 1e5));
   option("--upload-mb", service.upload_mb, "that one upload may have")->check(CLI::Range(0.001, 1e6));
   option("--quota-gb", service.quota_gb, "that uploads and results may have together")->check(CLI::Range(0.001, 1e6));

@@ -1,4 +1,8 @@
 // serve: the HTTP service; work: one job of it, in a process of its own.
+#include <fcntl.h>
+#include <linux/close_range.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <charconv>
@@ -42,6 +46,8 @@ ServiceConfig config_of(const ServiceArguments& arguments) {
   config.tokens = arguments.tokens;
   config.scenes = arguments.scenes;
   config.targets = arguments.targets;
+  config.presets = arguments.presets;
+  config.log = [](const std::string& line) { std::fprintf(stderr, "standin: %s\n", line.c_str()); };
   config.most_queued = arguments.queue;
   config.scheduler.program = this_program();
   config.scheduler.workers = static_cast<int>(arguments.workers);
@@ -59,9 +65,20 @@ ServiceConfig config_of(const ServiceArguments& arguments) {
   return config;
 }
 
+// Downloads and clients take a descriptor each; workers are to inherit none, and nobody else is to read the data.
+void prepare_this_process() {
+  ::umask(077);
+  ::close_range(3, ~0U, CLOSE_RANGE_CLOEXEC);
+  rlimit files{};
+  getrlimit(RLIMIT_NOFILE, &files);
+  files.rlim_cur = files.rlim_max;
+  setrlimit(RLIMIT_NOFILE, &files);
+}
+
 }  // namespace
 
 int serve_command(const CommandContext& context) {
+  prepare_this_process();
   ServiceConfig config = config_of(context.arguments.service);
   const std::string address = config.address;
   serve(std::move(config), context.budget, [&](std::uint16_t port) {

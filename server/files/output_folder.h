@@ -19,6 +19,8 @@ class OutputFolder {
   OutputFolder& operator=(const OutputFolder&) = delete;
 
   void write(const std::string& name, std::string_view bytes) const;
+  /// Where a file of it is to be written until then.
+  [[nodiscard]] std::filesystem::path path_of(const std::string& name) const { return staging_ / name; }
   void commit();
 
  private:

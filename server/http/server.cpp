@@ -4,6 +4,7 @@
 #include <fcntl.h>
 #include <microhttpd.h>
 #include <netinet/in.h>
+#include <sys/socket.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -26,11 +27,26 @@ struct DestroyResponse {
 };
 using Response = std::unique_ptr<MHD_Response, DestroyResponse>;
 
+// A connection, as its clients' speed is judged: a request must come in within bounds, whatever trickles.
+struct Link {
+  int socket = -1;
+  Clock::time_point since = Clock::now();  // of the phase
+  std::uint64_t received = 0;              // of a body
+  enum class Phase { kHead, kBody, kAnswer } phase = Phase::kHead;
+
+  void enter(Phase next) {
+    phase = next;
+    since = Clock::now();
+    received = 0;
+  }
+};
+
 // One request on its way.
 struct Exchange {
   HttpRequest request;
   std::unique_ptr<BodySink> body;
   std::optional<HttpResponse> refusal;  // known before the body's end
+  std::uint64_t drained = 0;            // bytes of its body that nobody wanted
   Clock::time_point start = Clock::now();
   int status = 0;
 };
@@ -48,14 +64,15 @@ MHD_Result keep_header(void* request, MHD_ValueKind, const char* name, const cha
 }
 
 // What a handler throws is its answer; anything else is ours to be ashamed of.
-template <class Handler>
-std::optional<HttpResponse> failure_of(Handler&& handler) {
+template <class Handler, class Unexpected>
+std::optional<HttpResponse> failure_of(Handler&& handler, Unexpected&& unexpected) {
   try {
     handler();
   } catch (const Failure& failure) {
     return problem_response(failure);
   } catch (const std::exception& error) {
-    return problem_response(Failure(ErrorWord::kInternal, error.what()));
+    unexpected(error);
+    return problem_response(Failure(ErrorWord::kInternal, "the server failed; its log says why"));
   }
   return std::nullopt;
 }
@@ -89,8 +106,9 @@ struct HttpServer::Loop {
   HttpApplication& application;
   const HttpLimits limits;
   MHD_Daemon* daemon = nullptr;
-  std::mutex mutex;  // of the streams
+  std::mutex mutex;  // of the streams and links
   std::set<Stream*> streams;
+  std::set<Link*> links;
   bool closing = false;
 
   static MHD_Result on_request(void* loop, MHD_Connection* connection, const char* url, const char* method, const char*, const char* data,
@@ -102,28 +120,77 @@ struct HttpServer::Loop {
     }
     auto& exchange = *static_cast<Exchange*>(*state);
     if (*size == 0) return self.end(exchange, connection);
-    if (!exchange.refusal) exchange.refusal = failure_of([&] { exchange.body->write({data, *size}); });
+    self.note_received(connection, *size);
+    if (exchange.refusal && (exchange.drained += *size) > kDrained) return MHD_NO;
+    if (!exchange.refusal) exchange.refusal = self.failure([&] { exchange.body->write({data, *size}); });
     *size = 0;
     return MHD_YES;
   }
 
+  template <class Handler>
+  std::optional<HttpResponse> failure(Handler&& handler) {
+    return failure_of(handler, [&](const std::exception& error) { application.unexpected(error.what()); });
+  }
+
+  static Link* link_of(MHD_Connection* connection) {
+    return static_cast<Link*>(MHD_get_connection_info(connection, MHD_CONNECTION_INFO_SOCKET_CONTEXT)->socket_context);
+  }
+
+  void enter(MHD_Connection* connection, Link::Phase phase) {
+    const std::scoped_lock lock(mutex);
+    if (Link* link = link_of(connection)) link->enter(phase);
+  }
+
+  void note_received(MHD_Connection* connection, std::size_t bytes) {
+    const std::scoped_lock lock(mutex);
+    if (Link* link = link_of(connection)) link->received += bytes;
+  }
+
+  static void on_connection(void* loop, MHD_Connection* connection, void** context, MHD_ConnectionNotificationCode code) {
+    auto& self = *static_cast<Loop*>(loop);
+    const std::scoped_lock lock(self.mutex);
+    if (code == MHD_CONNECTION_NOTIFY_STARTED) {
+      auto link = std::make_unique<Link>();
+      link->socket = MHD_get_connection_info(connection, MHD_CONNECTION_INFO_CONNECTION_FD)->connect_fd;
+      self.links.insert(link.get());
+      *context = link.release();
+    } else {
+      const std::unique_ptr<Link> link(static_cast<Link*>(std::exchange(*context, nullptr)));
+      self.links.erase(link.get());
+    }
+  }
+
+  // The loop sees a socket that was shut down as one that its client closed.
+  void drop_slow_links() {
+    const auto now = Clock::now();
+    for (const Link* link : links) {
+      const double seconds = std::chrono::duration<double>(now - link->since).count();
+      const bool slow_head = link->phase == Link::Phase::kHead && seconds > limits.head_s;
+      const bool slow_body = link->phase == Link::Phase::kBody && seconds > limits.head_s &&
+                             static_cast<double>(link->received) < limits.least_bytes_per_s * seconds;
+      if (slow_head || slow_body) ::shutdown(link->socket, SHUT_RDWR);
+    }
+  }
+
   MHD_Result begin(Exchange& exchange, MHD_Connection* connection, const char* url, const char* method) {
+    enter(connection, Link::Phase::kBody);
     exchange.request.method = method;
     exchange.request.path = url;
     MHD_get_connection_values(connection, MHD_GET_ARGUMENT_KIND, &keep_query, &exchange.request);
     MHD_get_connection_values(connection, MHD_HEADER_KIND, &keep_header, &exchange.request);
-    exchange.refusal = failure_of([&] { exchange.body = application.begin(exchange.request); });
+    exchange.refusal = failure([&] { exchange.body = application.begin(exchange.request); });
     if (!exchange.refusal || std::strtoull(exchange.request.header("content-length").c_str(), nullptr, 10) <= kDrained) return MHD_YES;
     return queue(exchange, connection, *exchange.refusal);
   }
 
   MHD_Result end(Exchange& exchange, MHD_Connection* connection) {
     HttpResponse response;
-    if (!exchange.refusal) exchange.refusal = failure_of([&] { response = application.answer(exchange.request, *exchange.body); });
+    if (!exchange.refusal) exchange.refusal = failure([&] { response = application.answer(exchange.request, *exchange.body); });
     return queue(exchange, connection, exchange.refusal ? *exchange.refusal : response);
   }
 
   MHD_Result queue(Exchange& exchange, MHD_Connection* connection, const HttpResponse& response) {
+    enter(connection, Link::Phase::kAnswer);
     exchange.status = response.status;
     const Response made = make(connection, response, exchange);
     if (!made) return MHD_NO;
@@ -141,7 +208,7 @@ struct HttpServer::Loop {
   static Response make_from(const FileBody& body, Exchange& exchange) {
     const int descriptor = ::open(body.file.c_str(), O_RDONLY | O_CLOEXEC);
     if (descriptor >= 0) return Response(MHD_create_response_from_fd_at_offset64(body.bytes, descriptor, body.begin));
-    exchange.status = 404;  // removed a moment ago
+    exchange.status = errno == ENOENT ? 404 : 503;  // removed a moment ago, or no descriptor is left
     return Response(MHD_create_response_from_buffer(0, nullptr, MHD_RESPMEM_PERSISTENT));
   }
 
@@ -169,7 +236,7 @@ struct HttpServer::Loop {
       }
       if (stream.pending.empty()) {
         std::optional<std::string> text;
-        if (failure_of([&] { text = stream.source->next(); }) || !text) return MHD_CONTENT_READER_END_OF_STREAM;
+        if (self.failure([&] { text = stream.source->next(); }) || !text) return MHD_CONTENT_READER_END_OF_STREAM;
         stream.pending = std::move(*text);
       }
       const std::scoped_lock lock(self.mutex);
@@ -202,7 +269,8 @@ struct HttpServer::Loop {
     if (std::exchange(stream.asleep, false)) MHD_resume_connection(stream.connection);
   }
 
-  static void on_completed(void* loop, MHD_Connection*, void** state, MHD_RequestTerminationCode) {
+  static void on_completed(void* loop, MHD_Connection* connection, void** state, MHD_RequestTerminationCode) {
+    static_cast<Loop*>(loop)->enter(connection, Link::Phase::kHead);
     const std::unique_ptr<Exchange> exchange(static_cast<Exchange*>(*state));
     *state = nullptr;
     if (!exchange) return;
@@ -218,7 +286,8 @@ HttpServer::HttpServer(HttpApplication& application, const std::string& address,
                                    loop_.get(), MHD_OPTION_SOCK_ADDR, &socket, MHD_OPTION_CONNECTION_LIMIT, limits.connections,
                                    MHD_OPTION_PER_IP_CONNECTION_LIMIT, limits.connections_of_one_address, MHD_OPTION_CONNECTION_TIMEOUT,
                                    limits.silent_s, MHD_OPTION_CONNECTION_MEMORY_LIMIT, limits.head_bytes, MHD_OPTION_NOTIFY_COMPLETED,
-                                   &Loop::on_completed, loop_.get(), MHD_OPTION_LISTENING_ADDRESS_REUSE, 1U, MHD_OPTION_END);
+                                   &Loop::on_completed, loop_.get(), MHD_OPTION_NOTIFY_CONNECTION, &Loop::on_connection, loop_.get(),
+                                   MHD_OPTION_LISTENING_ADDRESS_REUSE, 1U, MHD_OPTION_END);
   if (loop_->daemon == nullptr)
     throw Failure(ErrorWord::kInternal, "cannot listen on " + address + ":" + std::to_string(port) + ": " + std::strerror(errno));
 }
@@ -245,6 +314,7 @@ void HttpServer::changed(const std::string& subject) {
 void HttpServer::tick() {
   const auto now = Clock::now();
   const std::scoped_lock lock(loop_->mutex);
+  loop_->drop_slow_links();
   for (Loop::Stream* stream : loop_->streams) {
     if (std::chrono::duration<double>(now - stream->last_sent).count() < loop_->limits.heartbeat_s) continue;
     stream->heartbeat = true;

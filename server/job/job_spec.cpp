@@ -345,6 +345,14 @@ json to_json(const JobSpec& spec, bool result_only) {
   return object;
 }
 
+json changed_settings(const JobSpec& spec) {
+  const JobSpec defaults;
+  json changed = json::object();
+  for (const auto& field : spec_fields())
+    if (json value = field.get(spec); value != field.get(defaults)) changed[pointer_of(field.key)] = std::move(value);
+  return changed;
+}
+
 JobSpec spec_from_json(const json& object) {
   JobSpec spec;
   read_object(spec, object, "", "");

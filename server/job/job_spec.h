@@ -109,6 +109,8 @@ void read_config(JobSpec& spec, const std::filesystem::path& file);
 
 /// Nested object of all keys; `result_only` leaves out what cannot change a result.
 [[nodiscard]] nlohmann::json to_json(const JobSpec& spec, bool result_only);
+/// Those that are not the defaults.
+[[nodiscard]] nlohmann::json changed_settings(const JobSpec& spec);
 [[nodiscard]] JobSpec spec_from_json(const nlohmann::json& object);
 /// The job's JSON Schema (configs/job.schema.json is this text).
 [[nodiscard]] nlohmann::json spec_schema();

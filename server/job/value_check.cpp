@@ -37,12 +37,17 @@ void check_number(const json& schema, const json& value, const std::string& plac
 void check_string(const json& schema, const json& value, const std::string& place) {
   if (schema.contains("enum") && std::ranges::find(schema["enum"], value) == schema["enum"].end())
     reject_value(place, value, "one of " + schema["enum"].dump());
+  if (schema.contains("maxLength") && value.get_ref<const std::string&>().size() > schema["maxLength"])
+    reject_value(place, value, "at most " + schema["maxLength"].dump() + " bytes");
 }
 
 }  // namespace
 
 void reject_value(const std::string& place, const json& value, const std::string& constraint) {
-  throw Failure(ErrorWord::kBadConfig, place + " = " + value.dump() + " violates: " + constraint);
+  constexpr std::size_t kShown = 200;
+  std::string text = value.dump(-1, ' ', false, json::error_handler_t::replace);
+  if (text.size() > kShown) text = text.substr(0, kShown) + " ...";
+  throw Failure(ErrorWord::kBadConfig, place + " = " + text + " violates: " + constraint);
 }
 
 void check_value(const json& schema, const json& value, const std::string& place) {

@@ -1,6 +1,6 @@
 // A value from outside (a configuration file, a flag, a request) against the JSON Schema of its setting.
 //
-// The part of JSON Schema that settings use: type, enum, minimum, exclusiveMinimum, maximum, minItems, maxItems, items.
+// The part of JSON Schema that settings use: type, enum, maxLength, minimum, exclusiveMinimum, maximum, minItems, maxItems, items.
 #pragma once
 
 #include <nlohmann/json.hpp>

@@ -83,9 +83,49 @@ void require_length(const HttpRequest& request, std::uint64_t most_bytes) {
                   "a body of " + std::to_string(announced) + " bytes, no more than " + std::to_string(most_bytes) + " are taken");
 }
 
+// Of nested arrays and objects: what reads a body goes down as deep as it is.
+int depth_of(const std::string& text) {
+  int depth = 0, deepest = 0;
+  bool quoted = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (quoted && text[i] == '\\')
+      ++i;
+    else if (text[i] == '"')
+      quoted = !quoted;
+    else if (!quoted && (text[i] == '[' || text[i] == '{'))
+      deepest = std::max(deepest, ++depth);
+    else if (!quoted && (text[i] == ']' || text[i] == '}'))
+      --depth;
+  }
+  return deepest;
+}
+
+json parsed(const std::string& text) {
+  constexpr int kDeepest = 16;
+  if (depth_of(text) > kDeepest)
+    throw Failure(ErrorWord::kBadRequest, "the body is nested more than " + std::to_string(kDeepest) + " deep");
+  json body = json::parse(text, nullptr, false);
+  if (body.is_discarded()) throw Failure(ErrorWord::kBadRequest, "the body is not JSON");
+  return body;
+}
+
 std::string host_name(std::string host) {
   if (host.starts_with('[')) return host.substr(0, host.find(']') + 1);
   return host.substr(0, host.find(':'));
+}
+
+json presets_of(const fs::path& folder) {
+  json presets = json::array();
+  if (folder.empty()) return presets;
+  std::set<fs::path> files;
+  for (const auto& entry : fs::directory_iterator(folder))
+    if (entry.path().extension() == ".toml") files.insert(entry.path());
+  for (const fs::path& file : files) {
+    JobSpec spec;
+    read_config(spec, file);
+    presets.push_back({{"name", file.stem().string()}, {"spec", changed_settings(spec)}});
+  }
+  return presets;
 }
 
 std::map<std::string, fs::path> files_of_page(const fs::path& folder) {
@@ -94,6 +134,15 @@ std::map<std::string, fs::path> files_of_page(const fs::path& folder) {
   for (const auto& entry : fs::recursive_directory_iterator(folder))
     if (entry.is_regular_file()) files["/" + fs::relative(entry.path(), folder).generic_string()] = entry.path();
   return files;
+}
+
+// What strangers gave is data, never a page of this server's.
+void harden(HttpResponse& response) {
+  const auto has = [&](const char* name) {
+    return std::ranges::any_of(response.headers, [&](const auto& header) { return header.first == name; });
+  };
+  if (!has("X-Content-Type-Options")) response.headers.emplace_back("X-Content-Type-Options", "nosniff");
+  if (!has("Content-Security-Policy")) response.headers.emplace_back("Content-Security-Policy", "sandbox; default-src 'none'");
 }
 
 const std::set<std::string> kUploadTypes = {"application/octet-stream", "application/json", "model/gltf-binary", "application/zip"};
@@ -106,6 +155,7 @@ Api::Api(ApiConfig config, JobStore& jobs, BlobStore& blobs, Tokens tokens, ApiH
       blobs_(blobs),
       tokens_(std::move(tokens)),
       hooks_(std::move(hooks)),
+      presets_(presets_of(config_.presets)),
       page_files_(files_of_page(config_.web)) {}
 
 Api::Match Api::match(const HttpRequest& request) {
@@ -129,8 +179,13 @@ void Api::require_own_host(const HttpRequest& request) const {
   if (config_.loopback_only && !kLoopback.contains(host_name(host)))
     throw Failure(ErrorWord::kForbidden, "host " + host + " is not this server");
   const std::string origin = request.header("origin");
-  if (!origin.empty() && request.method != "GET" && origin.substr(origin.find("://") + 3) != host)
+  const std::size_t scheme = origin.find("://");
+  if (!origin.empty() && request.method != "GET" && (scheme == std::string::npos || origin.substr(scheme + 3) != host))
     throw Failure(ErrorWord::kForbidden, "a page of " + origin + " asks, not one of this server");
+}
+
+Failure Api::full() const {
+  return {ErrorWord::kDiskFull, "the service keeps " + std::to_string(config_.quota_bytes) + " bytes at most: delete jobs or uploads"};
 }
 
 std::unique_ptr<BodySink> Api::begin(HttpRequest& request) {
@@ -151,9 +206,7 @@ std::unique_ptr<BodySink> Api::begin(HttpRequest& request) {
     case Body::kUpload:
       require_type(request, kUploadTypes);
       require_length(request, config_.most_upload_bytes);
-      if (hooks_.stored_bytes() >= config_.quota_bytes)
-        throw Failure(ErrorWord::kDiskFull,
-                      "the service keeps " + std::to_string(config_.quota_bytes) + " bytes at most: delete jobs or uploads");
+      if (hooks_.stored_bytes() >= config_.quota_bytes) throw full();
       if (uploads_ >= config_.most_uploads)
         throw Failure(ErrorWord::kBusy, std::to_string(uploads_) + " uploads are on their way, no more may be");
       return std::make_unique<UploadBody>(blobs_, config_.most_upload_bytes, uploads_);
@@ -164,12 +217,11 @@ std::unique_ptr<BodySink> Api::begin(HttpRequest& request) {
 HttpResponse Api::answer(const HttpRequest& request, BodySink& body) {
   const Match found = match(request);
   Exchange exchange{request, found.path, nullptr};
-  if (found.route->body == Body::kJson) {
-    exchange.body = json::parse(dynamic_cast<TextBody&>(body).text(), nullptr, false);
-    if (exchange.body.is_discarded()) throw Failure(ErrorWord::kBadRequest, "the body is not JSON");
-  }
+  if (found.route->body == Body::kJson) exchange.body = parsed(dynamic_cast<TextBody&>(body).text());
   if (found.route->body == Body::kUpload) exchange.upload = &dynamic_cast<UploadBody&>(body).incoming();
-  return (this->*found.route->handler)(exchange);
+  HttpResponse response = (this->*found.route->handler)(exchange);
+  if (request.path.starts_with("/v1")) harden(response);
+  return response;
 }
 
 void Api::answered(const HttpRequest&, int status, double seconds) {

@@ -22,9 +22,10 @@
 namespace standin {
 
 struct ApiConfig {
-  std::filesystem::path web;  // the page; empty: none
-  bool loopback_only = true;  // requests must name this machine as their host then
-  std::uint64_t most_body_bytes = 1 << 20;
+  std::filesystem::path web;      // the page; empty: none
+  std::filesystem::path presets;  // folder of configuration files; empty: none
+  bool loopback_only = true;      // requests must name this machine as their host then
+  std::uint64_t most_body_bytes = 64 * 1024;
   std::uint64_t most_upload_bytes = std::uint64_t{2} << 30;
   std::uint64_t quota_bytes = std::uint64_t{50} << 30;  // of all blobs
   unsigned most_streams = 200;
@@ -38,7 +39,8 @@ struct ApiHooks {
   std::function<void()> queue_changed;
   std::function<double()> worker_cpu_s;
   std::function<unsigned()> open_streams;
-  std::function<std::uint64_t()> stored_bytes;  // of all blobs, as of a moment ago
+  std::function<std::uint64_t()> stored_bytes;  // of blobs and work folders, as of a moment ago
+  std::function<void(const std::string&)> log;
 };
 
 class Api : public HttpApplication {
@@ -65,6 +67,7 @@ class Api : public HttpApplication {
 
   std::unique_ptr<BodySink> begin(HttpRequest& request) override;
   HttpResponse answer(const HttpRequest& request, BodySink& body) override;
+  void unexpected(const std::string& what) override { hooks_.log(what); }
   void answered(const HttpRequest& request, int status, double seconds) override;
 
   [[nodiscard]] static const std::vector<Route>& routes();
@@ -95,12 +98,15 @@ class Api : public HttpApplication {
   HttpResponse list_scenes(const Exchange& exchange);
   HttpResponse list_targets(const Exchange& exchange);
   HttpResponse get_schema(const Exchange& exchange);
+  HttpResponse list_presets(const Exchange& exchange);
   HttpResponse health(const Exchange& exchange);
   HttpResponse ready(const Exchange& exchange);
   HttpResponse metrics(const Exchange& exchange);
   HttpResponse get_openapi(const Exchange& exchange);
   HttpResponse page(const Exchange& exchange);
 
+  [[nodiscard]] HttpResponse accepted(const Job& job);
+  [[nodiscard]] Failure full() const;
   [[nodiscard]] Job job_of(const Exchange& exchange);
   [[nodiscard]] nlohmann::json document_of(const Job& job);
   [[nodiscard]] nlohmann::json dry_run(const JobRequest& request, const NewJob& job);
@@ -114,6 +120,7 @@ class Api : public HttpApplication {
   BlobStore& blobs_;
   const Tokens tokens_;
   const ApiHooks hooks_;
+  const nlohmann::json presets_;
   std::map<std::string, std::filesystem::path> page_files_;  // by URL path
   std::atomic<unsigned> uploads_{0};
   std::mutex counting_;
@@ -121,6 +128,8 @@ class Api : public HttpApplication {
   double answer_s_ = 0.0;
 };
 
+/// ISO 8601; null where there is none.
+[[nodiscard]] nlohmann::json time_text(std::optional<std::int64_t> moment_ms);
 /// What an artifact is, by its name.
 [[nodiscard]] std::string media_type(const std::string& name);
 

@@ -16,7 +16,7 @@ json upload_json(const Upload& upload) {
           {"name", upload.file.name},
           {"bytes", upload.file.bytes},
           {"sha256", upload.file.sha256},
-          {"created_ms", upload.created_ms}};
+          {"created", time_text(upload.created_ms)}};
 }
 
 json files_json(const std::vector<StoredFile>& files) {
@@ -76,6 +76,10 @@ HttpResponse Api::list_targets(const Exchange&) {
 
 HttpResponse Api::get_schema(const Exchange&) {
   return json_response(200, spec_schema());
+}
+
+HttpResponse Api::list_presets(const Exchange&) {
+  return json_response(200, {{"presets", presets_}});
 }
 
 // The page is one document; what it shows is in the part of the address that it reads itself.

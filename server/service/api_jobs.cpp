@@ -14,6 +14,8 @@ using nlohmann::json;
 constexpr int kMostPerPage = 200;
 constexpr std::size_t kMostKeyBytes = 200;
 
+}  // namespace
+
 json time_text(std::optional<std::int64_t> moment_ms) {
   if (!moment_ms) return nullptr;
   const std::time_t seconds = *moment_ms / 1000;
@@ -25,6 +27,8 @@ json time_text(std::optional<std::int64_t> moment_ms) {
   std::snprintf(fraction.data(), fraction.size(), ".%03dZ", static_cast<int>(*moment_ms % 1000));
   return std::string(text.data()) + fraction.data();
 }
+
+namespace {
 
 std::int64_t integer_of(const HttpRequest& request, const std::string& key, std::int64_t otherwise, std::int64_t least, std::int64_t most) {
   const auto given = request.query.find(key);
@@ -45,6 +49,7 @@ class JobEvents : public TextStream {
 
   std::optional<std::string> next() override {
     if (ended_) return std::nullopt;
+    const bool was_over = over();  // asked first: the last event is in the store by then
     std::string text;
     for (const JobEvent& event : jobs_.events_of(id_, after_)) {
       after_ = event.id;
@@ -53,7 +58,7 @@ class JobEvents : public TextStream {
       const bool progress = event.data.at("state") == "running" && event.data.at("stage") != "";
       text += "id: " + std::to_string(event.id) + "\nevent: " + (progress ? "progress" : "state") + "\ndata: " + event.data.dump() + "\n\n";
     }
-    if (text.empty() && over()) return std::nullopt;
+    if (text.empty() && was_over) return std::nullopt;
     return text;
   }
   [[nodiscard]] const std::string& subject() const override { return id_; }
@@ -174,12 +179,18 @@ HttpResponse Api::submit(const Exchange& exchange) {
   const std::string key = exchange.request.header("idempotency-key");
   if (key.size() > kMostKeyBytes)
     throw Failure(ErrorWord::kBadRequest, "an Idempotency-Key of more than " + std::to_string(kMostKeyBytes) + " bytes");
+  if (const auto earlier = jobs_.earlier(owner, key, exchange.body)) return accepted(*earlier);
   const NewJob job{owner, std::string(kind_name(request.kind)), request.label, exchange.body, inputs_of(request, owner)};
   if (request.dry_run) return json_response(200, dry_run(request, job));
+  if (hooks_.stored_bytes() >= config_.quota_bytes) throw full();
   const Submission made = jobs_.submit(job, key);
   if (!made.replayed) hooks_.queue_changed();
-  HttpResponse response = json_response(202, document_of(made.job));
-  response.headers.emplace_back("Location", "/v1/jobs/" + made.job.id);
+  return accepted(made.job);
+}
+
+HttpResponse Api::accepted(const Job& job) {
+  HttpResponse response = json_response(202, document_of(job));
+  response.headers.emplace_back("Location", "/v1/jobs/" + job.id);
   response.headers.emplace_back("Retry-After", "1");
   return response;
 }
@@ -198,7 +209,10 @@ HttpResponse Api::list_jobs(const Exchange& exchange) {
   filter.before = integer_of(exchange.request, "after", 0, 0, INT64_MAX);
   const JobPage page = jobs_.list(exchange.request.owner, filter);
   json documents = json::array();
-  for (const Job& job : page.jobs) documents.push_back(document_of(job));
+  for (const Job& job : page.jobs) {
+    documents.push_back(document_of(job));
+    documents.back().erase("request");
+  }
   return json_response(200, {{"jobs", documents}, {"next", page.next ? json(std::to_string(*page.next)) : json(nullptr)}});
 }
 
@@ -225,6 +239,7 @@ HttpResponse Api::cancel_job(const Exchange& exchange) {
 
 HttpResponse Api::job_events(const Exchange& exchange) {
   const Job job = job_of(exchange);
+  if (exchange.request.method == "HEAD") return {200, {{"Content-Type", "text/event-stream"}}, std::string()};
   if (hooks_.open_streams() >= config_.most_streams)
     throw Failure(ErrorWord::kBusy, std::to_string(config_.most_streams) + " event streams are open, no more may be");
   std::int64_t after = 0;
@@ -264,7 +279,8 @@ HttpResponse Api::get_scene(const Exchange& exchange) {
   const auto scene = inputs.find("scene");
   if (scene == inputs.end()) throw Failure(ErrorWord::kNotFound, "job " + job.id + " has no scene");
   const StoredFile& file = scene->second;
-  return file_response(exchange.request, blobs_.path_of(file.sha256), file.bytes, file.sha256, media_type(file.name));
+  // Never what its name says: a client gave that, and a page among scenes would be this server's.
+  return file_response(exchange.request, blobs_.path_of(file.sha256), file.bytes, file.sha256, "application/octet-stream");
 }
 
 }  // namespace standin

@@ -78,8 +78,11 @@ class Unpacker {
   }
 
   void write(const fs::path& file) {
-    fs::create_directories(file.parent_path());
+    std::error_code error;
+    fs::create_directories(file.parent_path(), error);
     std::ofstream stream(file, std::ios::binary);
+    if (error || !stream)
+      throw Failure(ErrorWord::kFileBroken, name_ + " holds \"" + file.filename().string() + "\", which cannot be made a file");
     std::array<char, kBlock> block{};
     for (;;) {
       budget_.check();

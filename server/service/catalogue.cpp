@@ -6,7 +6,7 @@ namespace standin {
 
 namespace fs = std::filesystem;
 
-void Catalogue::refresh() {
+void Catalogue::refresh(std::chrono::seconds settle) {
   if (folder_.empty()) return;
   std::map<std::string, Entry> found;
   std::error_code gone;
@@ -19,11 +19,21 @@ void Catalogue::refresh() {
     const auto known = entries_.find(name);
     if (known != entries_.end() && known->second.written == written && known->second.file.bytes == bytes)
       found[name] = known->second;
-    else
-      found[name] = {written, blobs_.copy(entry.path(), name)};
+    else if (fs::file_time_type::clock::now() - written >= settle)
+      take(entry.path(), {written, {name, bytes, ""}}, found);
   }
   const std::scoped_lock lock(mutex_);
   entries_ = std::move(found);
+}
+
+// A file that cannot be read is not offered.
+void Catalogue::take(const fs::path& file, Entry entry, std::map<std::string, Entry>& found) {
+  try {
+    entry.file = blobs_.copy(file, entry.file.name);
+    found[entry.file.name] = entry;
+  } catch (const Failure& failure) {
+    log_(std::string("not offered: ") + failure.what());
+  }
 }
 
 std::optional<StoredFile> Catalogue::find(const std::string& name) const {

@@ -4,7 +4,9 @@
 // submitted with. Neither sub-folders nor hidden files nor links are offered.
 #pragma once
 
+#include <chrono>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <mutex>
 #include <optional>
@@ -18,10 +20,12 @@ namespace standin {
 class Catalogue {
  public:
   /// `folder`: empty: nothing is offered.
-  Catalogue(std::filesystem::path folder, BlobStore& blobs) : folder_(std::move(folder)), blobs_(blobs) {}
+  Catalogue(std::filesystem::path folder, BlobStore& blobs, std::function<void(const std::string&)> log)
+      : folder_(std::move(folder)), blobs_(blobs), log_(std::move(log)) {}
 
-  /// Looks at the folder again. From one thread at a time.
-  void refresh();
+  /// Looks at the folder again, leaving out new files that were written to within the last `settle` seconds: they may not be whole. From
+  /// one thread at a time.
+  void refresh(std::chrono::seconds settle);
   [[nodiscard]] std::optional<StoredFile> find(const std::string& name) const;
   /// By name.
   [[nodiscard]] std::vector<StoredFile> files() const;
@@ -31,8 +35,11 @@ class Catalogue {
     std::filesystem::file_time_type written;
     StoredFile file;
   };
+  void take(const std::filesystem::path& file, Entry entry, std::map<std::string, Entry>& found);
+
   const std::filesystem::path folder_;
   BlobStore& blobs_;
+  const std::function<void(const std::string&)> log_;
   mutable std::mutex mutex_;
   std::map<std::string, Entry> entries_;
 };

@@ -15,12 +15,13 @@
 namespace standin {
 namespace {
 
-void limit(__rlimit_resource resource, std::uint64_t most, const char* what) {
+// `grace`: from the soft limit, which sends a signal, to the hard one, which kills.
+void limit(__rlimit_resource resource, std::uint64_t most, const char* what, std::uint64_t grace = 0) {
   if (most == 0) return;
   rlimit now{};
   getrlimit(resource, &now);
-  const rlim_t value = now.rlim_max == RLIM_INFINITY ? most : std::min<rlim_t>(most, now.rlim_max);
-  const rlimit wanted{value, value};
+  const auto within = [&](rlim_t value) { return now.rlim_max == RLIM_INFINITY ? value : std::min(value, now.rlim_max); };
+  const rlimit wanted{within(most), within(most + grace)};
   if (setrlimit(resource, &wanted) != 0)
     throw Failure(ErrorWord::kInternal, std::string("worker limit on ") + what + ": " + std::strerror(errno));
 }
@@ -51,7 +52,7 @@ bool confine_this_process(const WorkerLimits& limits, pid_t parent) {
   setpriority(PRIO_PROCESS, 0, limits.niceness);
   const bool no_network = leave_the_network();
   limit(RLIMIT_DATA, limits.data_bytes, "data");
-  limit(RLIMIT_CPU, limits.cpu_s, "processor time");
+  limit(RLIMIT_CPU, limits.cpu_s, "processor time", 5);
   limit(RLIMIT_NOFILE, limits.open_files, "open files");
   limit(RLIMIT_FSIZE, limits.file_bytes, "file size");
   limit(RLIMIT_CORE, 1, "core dumps");

@@ -43,12 +43,12 @@ std::vector<ArgumentField> make_argument_fields() {
       {JobKind::kBake,
        "objects",
        "object ids, as 1,2,5-9; all without it",
-       {{"type", "string"}},
+       {{"type", "string"}, {"maxLength", 4096}},
        [](CommandArguments& a, const json& v) { a.objects = v; }},
       {JobKind::kBake,
        "view_cell",
        "shaft:DX,DY,DZ,APEX_DEG,MIN_DISTANCE or box:X0,Y0,Z0,X1,Y1,Z1; needed",
-       {{"type", "string"}},
+       {{"type", "string"}, {"maxLength", 4096}},
        [](CommandArguments& a, const json& v) { a.view_cell = v; }},
       {JobKind::kBake,
        "technique",
@@ -149,14 +149,14 @@ void read_arguments(Reader& reader, JobKind kind, const json& body, json& argume
   arguments = json::object();
   if (!body.contains("arguments")) return;
   if (!body["arguments"].is_object()) return reader.wrong("/arguments", "an object is expected");
-  for (const auto& [key, value] : body["arguments"].items()) {
+  arguments = body["arguments"];
+  for (const auto& [key, value] : arguments.items()) {
     const std::string pointer = "/arguments/" + Reader::escaped(key);
     if (const ArgumentField* field = find_argument(kind, key))
       reader.attempt(pointer, [&, &value_ = value] { check_value(field->schema, value_, field->key); });
     else
       reader.wrong(pointer, "is no argument of " + std::string(kind_name(kind)));
   }
-  arguments = body["arguments"];
 }
 
 void require_what_the_kind_needs(Reader& reader, const JobRequest& request) {
@@ -222,7 +222,7 @@ JobRequest parse_job_request(const json& body) {
   request.placed_job = reader.text(body, "job", 64);
   if (body.contains("spec")) reader.settings(request.spec, body["spec"], "/spec", "");
   if (body.contains("dry_run") && !body["dry_run"].is_boolean()) reader.wrong("/dry_run", "true or false is expected");
-  request.dry_run = body.value("dry_run", json(false)) == true;
+  request.dry_run = body.contains("dry_run") && body["dry_run"] == true;
   read_arguments(reader, request.kind, body, request.arguments);
   require_what_the_kind_needs(reader, request);
   reader.finish();

@@ -7,6 +7,7 @@
 #include <chrono>
 #include <csignal>
 #include <cstring>
+#include <utility>
 
 #include "render/base/error.h"
 #include "render/base/sha256.h"
@@ -23,8 +24,10 @@ using nlohmann::json;
 using Clock = std::chrono::steady_clock;
 
 constexpr std::chrono::milliseconds kLook{100};
-constexpr double kGrace_s = 1.2;       // from asking a worker to stop to killing it
-constexpr double kReportEach_s = 0.5;  // within a stage
+constexpr std::chrono::seconds kPause{2};     // after a failure of the server's own
+constexpr std::chrono::seconds kSpared{300};  // younger blobs may be on their way into the store
+constexpr double kGrace_s = 1.2;              // from asking a worker to stop to killing it
+constexpr double kReportEach_s = 0.5;         // within a stage
 
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
@@ -43,7 +46,8 @@ json read_outcome(const fs::path& folder) {
 
 // A worker that was stopped says so, too, but not how its job ends.
 bool tells_the_end(const json& outcome) {
-  return outcome.is_object() && (outcome.value("exit_code", 3) <= 1 || outcome["problem"]["word"] != "cancelled");
+  return outcome.is_object() &&
+         (outcome.value("exit_code", 3) <= 1 || (outcome.contains("problem") && outcome["problem"].value("word", "") != "cancelled"));
 }
 
 JobEnd failed(ErrorWord word, const std::string& sentence) {
@@ -128,14 +132,16 @@ class Scheduler::Attempt {
 
   // Whoever kills a worker says nothing of its job; what crashes would crash again.
   void lost() {
-    const bool killed = signal_ == SIGKILL || signal_ == SIGTERM || signal_ == 0;
+    const std::uint64_t cpu_s = scheduler_.config_.limits.cpu_s;
+    const bool out_of_time = signal_ == SIGXCPU || (cpu_s > 0 && used_ && used_->cpu_s >= static_cast<double>(cpu_s));
+    const bool killed = !out_of_time && (signal_ == SIGKILL || signal_ == SIGTERM || signal_ == 0);
     if (killed && job_.attempts < scheduler_.config_.most_attempts) {
       fs::remove_all(folder_);
       return scheduler_.jobs_.requeue(job_.id, true);
     }
-    const std::string how = signal_ == 0         ? "ended without a word"
-                            : signal_ == SIGXCPU ? "used all the processor time that a job may have"
-                                                 : "was ended by signal " + std::to_string(signal_) + " (" + strsignal(signal_) + ")";
+    const std::string how = out_of_time    ? "used all the processor time that a job may have"
+                            : signal_ == 0 ? "ended without a word"
+                                           : "was ended by signal " + std::to_string(signal_) + " (" + strsignal(signal_) + ")";
     end(failed(ErrorWord::kWorkerLost, "the worker " + how + ", at attempt " + std::to_string(job_.attempts) + ", in stage " +
                                            (stage_.empty() ? "start" : stage_)));
   }
@@ -170,8 +176,9 @@ class Scheduler::Attempt {
   Clock::time_point reported_;
 };
 
-Scheduler::Scheduler(SchedulerConfig config, JobStore& jobs, BlobStore& blobs, std::function<std::vector<std::string>()> blobs_in_use)
-    : config_(std::move(config)), jobs_(jobs), blobs_(blobs), blobs_in_use_(std::move(blobs_in_use)) {
+Scheduler::Scheduler(SchedulerConfig config, JobStore& jobs, BlobStore& blobs, std::function<std::vector<std::string>()> blobs_in_use,
+                     std::function<void(const std::string&)> log)
+    : config_(std::move(config)), jobs_(jobs), blobs_(blobs), blobs_in_use_(std::move(blobs_in_use)), log_(std::move(log)) {
   fs::create_directories(config_.data / "work");
   recover();
   tidy();
@@ -199,32 +206,51 @@ void Scheduler::recover() {
   for (const Job& job : jobs_.in_state(JobState::kRunning)) jobs_.requeue(job.id, false);
 }
 
+// A store that cannot be written to (a full disk, a backup that holds it) is waited for: the thread, and the job, outlive it.
 void Scheduler::loop() {
+  std::string stranded;  // running by the store, and done by nobody
   while (!stopping_) {
-    std::uint64_t seen = 0;
-    {
-      const std::scoped_lock lock(mutex_);
-      seen = changes_;
+    try {
+      if (!stranded.empty()) jobs_.requeue(std::exchange(stranded, ""), false);
+      const std::uint64_t seen = changes();
+      if (const auto job = jobs_.start_next()) {
+        stranded = job->id;
+        run(*job);
+        stranded.clear();
+      } else {
+        wait_for_change(seen);
+      }
+    } catch (const std::exception& error) {
+      log_(std::string("scheduler: ") + error.what());
+      std::this_thread::sleep_for(kPause);
     }
-    if (const auto job = jobs_.start_next()) {
-      run(*job);
-      continue;
-    }
-    std::unique_lock lock(mutex_);
-    changed_.wait_for(lock, std::chrono::seconds(5), [&] { return changes_ != seen || stopping_; });
   }
 }
 
+std::uint64_t Scheduler::changes() {
+  const std::scoped_lock lock(mutex_);
+  return changes_;
+}
+
+void Scheduler::wait_for_change(std::uint64_t seen) {
+  std::unique_lock lock(mutex_);
+  changed_.wait_for(lock, std::chrono::seconds(5), [&] { return changes_ != seen || stopping_; });
+}
+
+// What fails here is the server's: its disk, its descriptors. Clients are not told of its insides.
 void Scheduler::run(const Job& job) {
+  if (job.cancel_asked) {
+    fs::remove_all(folder_of(job.id));
+    return jobs_.finish(job.id, {.state = JobState::kCancelled, .aim_met = {}, .problem = {}, .artifacts = {}});
+  }
   try {
-    if (job.cancel_asked)
-      jobs_.finish(job.id, {.state = JobState::kCancelled, .aim_met = {}, .problem = {}, .artifacts = {}});
-    else
-      Attempt(*this, job).run();
-  } catch (const Failure& failure) {
-    jobs_.finish(job.id, failed(failure.word(), failure.what()));
+    Attempt(*this, job).run();
   } catch (const std::exception& error) {
-    jobs_.finish(job.id, failed(ErrorWord::kInternal, error.what()));
+    log_("job " + job.id + ", attempt " + std::to_string(job.attempts) + ": " + error.what());
+    if (job.attempts >= config_.most_attempts)
+      return jobs_.finish(job.id, failed(ErrorWord::kInternal, "the server could not run the job; its log says why"));
+    std::this_thread::sleep_for(kPause);
+    jobs_.requeue(job.id, true);
   }
 }
 
@@ -232,7 +258,7 @@ void Scheduler::tidy() {
   if (config_.keep_s > 0.0)
     for (const Job& job : jobs_.finished_before(now_ms() - static_cast<std::int64_t>(1e3 * config_.keep_s))) jobs_.remove("", job.id);
   const std::scoped_lock lock(collecting_);
-  blobs_.keep_only(blobs_in_use_);
+  blobs_.keep_only(blobs_in_use_, kSpared);
   for (const auto& entry : fs::directory_iterator(config_.data / "work")) {
     const auto job = jobs_.find("", entry.path().filename().string());
     if (!job || is_final(job->state)) fs::remove_all(entry.path());

@@ -35,7 +35,8 @@ struct SchedulerConfig {
 class Scheduler {
  public:
   /// `blobs_in_use`: SHA-256 of what is not to be tidied away.
-  Scheduler(SchedulerConfig config, JobStore& jobs, BlobStore& blobs, std::function<std::vector<std::string>()> blobs_in_use);
+  Scheduler(SchedulerConfig config, JobStore& jobs, BlobStore& blobs, std::function<std::vector<std::string>()> blobs_in_use,
+            std::function<void(const std::string&)> log);
   ~Scheduler() { stop(); }
   Scheduler(const Scheduler&) = delete;
   Scheduler& operator=(const Scheduler&) = delete;
@@ -53,6 +54,8 @@ class Scheduler {
   class Attempt;
   void recover();
   void loop();
+  [[nodiscard]] std::uint64_t changes();
+  void wait_for_change(std::uint64_t seen);
   void run(const Job& job);
   [[nodiscard]] std::filesystem::path folder_of(const std::string& id) const { return config_.data / "work" / id; }
   [[nodiscard]] std::filesystem::path cache_of(const std::string& owner) const;
@@ -61,6 +64,7 @@ class Scheduler {
   JobStore& jobs_;
   BlobStore& blobs_;
   const std::function<std::vector<std::string>()> blobs_in_use_;
+  const std::function<void(const std::string&)> log_;
   std::mutex mutex_;
   std::condition_variable changed_;
   std::uint64_t changes_ = 0;

@@ -16,6 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr std::chrono::seconds kSettle{2};
 constexpr int kTidyEach_s = 60;
 constexpr int kMeasureEach_s = 5;
 
@@ -47,38 +48,57 @@ class Service {
         lock_(config_.data),
         blobs_(config_.data / "blobs"),
         jobs_(config_.data / "jobs.sqlite", config_.most_queued),
-        scenes_(config_.scenes, blobs_),
-        targets_(config_.targets, blobs_),
+        scenes_(config_.scenes, blobs_, config_.log),
+        targets_(config_.targets, blobs_, config_.log),
         api_(config_.api, jobs_, blobs_, config_.tokens.empty() ? Tokens() : Tokens(config_.tokens), hooks()) {
-    scenes_.refresh();
-    targets_.refresh();
+    jobs_.on_change([this](const std::string& id) {
+      if (HttpServer* one = server_) one->changed(id);
+    });
+    scenes_.refresh(std::chrono::seconds(0));
+    targets_.refresh(std::chrono::seconds(0));
   }
 
   void run(const WorkBudget& budget, const std::function<void(std::uint16_t)>& started) {
-    Scheduler scheduler(config_.scheduler, jobs_, blobs_, [this] { return in_use(); });
+    Scheduler scheduler(
+        config_.scheduler, jobs_, blobs_, [this] { return in_use(); }, config_.log);
     HttpServer server(api_, config_.address, config_.port, config_.http);
     scheduler_ = &scheduler;
     server_ = &server;
-    jobs_.on_change([this](const std::string& id) { server_.load()->changed(id); });
+    // It tells the server of what it puts back, and the server may wake it: it stops before either goes.
+    const StopFirst stop_first{scheduler};
     started(server.port());
     for (int second = 0; !budget.stopped(); ++second) {
       server.tick();
-      scenes_.refresh();
-      targets_.refresh();
-      if (second % kTidyEach_s == kTidyEach_s - 1) scheduler.tidy();
-      if (second % kMeasureEach_s == 0) stored_bytes_ = folder_bytes(config_.data / "blobs");
+      do_chores(scheduler, second);
       for (int i = 0; i < 10 && !budget.stopped(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(100));
     }
-    scheduler.stop();  // it tells the server of what it puts back, and the server may wake it
   }
 
  private:
+  struct StopFirst {
+    Scheduler& scheduler;
+    ~StopFirst() { scheduler.stop(); }
+  };
+
+  // What fails now may work later.
+  void do_chores(Scheduler& scheduler, int second) {
+    try {
+      scenes_.refresh(kSettle);
+      targets_.refresh(kSettle);
+      if (second % kTidyEach_s == kTidyEach_s - 1) scheduler.tidy();
+      if (second % kMeasureEach_s == 0) stored_bytes_ = folder_bytes(config_.data / "blobs") + folder_bytes(config_.data / "work");
+    } catch (const std::exception& error) {
+      config_.log(std::string("chores: ") + error.what());
+    }
+  }
+
   static ServiceConfig prepared(ServiceConfig config) {
     if (!is_loopback(config.address) && config.tokens.empty())
       throw Failure(ErrorWord::kBadUsage, "listening on " + config.address + " needs --tokens: without, anybody could use the service");
     fs::create_directories(config.data);
     config.data = fs::canonical(config.data);
     config.scheduler.data = config.data;
+    config.api.presets = config.presets;
     config.api.loopback_only = is_loopback(config.address) && config.tokens.empty();
     return config;
   }
@@ -97,7 +117,8 @@ class Service {
               HttpServer* one = server_;
               return one == nullptr ? 0U : one->open_streams();
             },
-            [this] { return stored_bytes_.load(); }};
+            [this] { return stored_bytes_.load(); },
+            config_.log};
   }
 
   std::vector<std::string> in_use() {
@@ -108,14 +129,14 @@ class Service {
   }
 
   const ServiceConfig config_;
+  std::atomic<Scheduler*> scheduler_{nullptr};
+  std::atomic<HttpServer*> server_{nullptr};
   FolderLock lock_;
   BlobStore blobs_;
   JobStore jobs_;
   Catalogue scenes_;
   Catalogue targets_;
   Api api_;
-  std::atomic<Scheduler*> scheduler_{nullptr};
-  std::atomic<HttpServer*> server_{nullptr};
   std::atomic<std::uint64_t> stored_bytes_{0};
 };
 

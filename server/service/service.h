@@ -20,7 +20,9 @@ struct ServiceConfig {
   std::filesystem::path tokens;  // file; empty: none
   std::filesystem::path scenes;  // folders whose files may be named; empty: none
   std::filesystem::path targets;
+  std::filesystem::path presets;  // folder of configuration files; empty: none
   std::uint64_t most_queued = 100;
+  std::function<void(const std::string&)> log = [](const std::string&) {};  // from any thread
   SchedulerConfig scheduler;
   ApiConfig api;
   HttpLimits http;

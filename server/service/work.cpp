@@ -134,8 +134,8 @@ int work(const fs::path& folder, pid_t parent) {
   std::cout.flush();
   std::fflush(stdout);
   try {
-    write_file(folder / kOutcomeFile, outcome.dump());
-  } catch (const Failure&) {  // the server sees a worker that ended without a word
+    write_file(folder / kOutcomeFile, outcome.dump(-1, ' ', false, json::error_handler_t::replace));
+  } catch (const std::exception&) {  // the server sees a worker that ended without a word
     return 3;
   }
   return outcome["exit_code"];

@@ -38,8 +38,10 @@ std::string harmless_name(const std::string& name, const std::string& otherwise)
   constexpr std::size_t kMostBytes = 120;
   std::string result = name.substr(name.find_last_of("/\\") + 1);
   std::erase_if(result, [](unsigned char c) { return c < 32 || c == 127; });
+  result = json::parse(json(result).dump(-1, ' ', false, json::error_handler_t::replace));  // as UTF-8
   while (result.starts_with('.')) result.erase(0, 1);
   if (result.size() > kMostBytes) result.erase(0, result.size() - kMostBytes);
+  while (!result.empty() && (static_cast<unsigned char>(result.front()) & 0xC0) == 0x80) result.erase(0, 1);  // the rest of a cut character
   return result.empty() ? otherwise : result;
 }
 

@@ -20,7 +20,15 @@ constexpr std::uint64_t kFlushed = 8 << 20;  // so that the last flush of a larg
 
 [[noreturn]] void unwritable(const fs::path& file) {
   const bool full = errno == ENOSPC || errno == EDQUOT;
-  throw Failure(full ? ErrorWord::kDiskFull : ErrorWord::kInternal, "blob store: " + file.string() + ": " + std::strerror(errno));
+  throw Failure(full ? ErrorWord::kDiskFull : ErrorWord::kInternal,
+                file.filename().string() + " cannot be stored: " + std::strerror(errno));
+}
+
+void flush(const fs::path& file) {
+  const int descriptor = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
+  const bool flushed = descriptor >= 0 && ::fsync(descriptor) == 0;
+  if (descriptor >= 0) ::close(descriptor);
+  if (!flushed) unwritable(file);
 }
 
 template <class Take>
@@ -48,17 +56,26 @@ bool BlobStore::holds(const std::string& sha256) const {
   return fs::exists(path_of(sha256));
 }
 
+// Once a job says that it has it, it survives the machine: its bytes and its name are flushed first.
 void BlobStore::place(const fs::path& from, const std::string& sha256) const {
   const fs::path to = path_of(sha256);
   fs::create_directories(to.parent_path());
-  if (::link(from.c_str(), to.c_str()) != 0 && errno != EEXIST) unwritable(to);
+  flush(from);
+  if (::link(from.c_str(), to.c_str()) != 0) {
+    if (errno != EEXIST) unwritable(to);
+    fs::last_write_time(to, fs::file_time_type::clock::now());
+    if (fs::file_size(to) == fs::file_size(from)) return;
+    fs::remove(to);  // cut by a crash of the machine
+    if (::link(from.c_str(), to.c_str()) != 0) unwritable(to);
+  }
+  fs::last_write_time(to, fs::file_time_type::clock::now());
+  flush(to.parent_path());
 }
 
 StoredFile BlobStore::adopt(const fs::path& file, const std::string& name) {
   Fingerprinter sum;
   for_each_piece(file, [&](std::string_view piece) { sum.add_bytes(piece.data(), piece.size()); });
   const std::string sha256 = sum.fingerprint().hex();
-  const std::scoped_lock lock(mutex_);
   place(file, sha256);
   return {name, fs::file_size(file), sha256};
 }
@@ -69,27 +86,24 @@ StoredFile BlobStore::copy(const fs::path& file, const std::string& name) {
   return incoming.finish(name);
 }
 
-void BlobStore::remove_others(const std::vector<std::string>& in_use) const {
+void BlobStore::remove_others(const std::vector<std::string>& in_use, std::chrono::seconds spared) const {
+  const auto now = fs::file_time_type::clock::now();
   const std::set<std::string> kept(in_use.begin(), in_use.end());
   for (const auto& shelf : fs::directory_iterator(folder_)) {
     if (shelf.path().filename() == "incoming") continue;
     for (const auto& blob : fs::directory_iterator(shelf.path()))
-      if (!kept.contains(blob.path().filename().string())) fs::remove(blob.path());
+      if (!kept.contains(blob.path().filename().string()) && now - blob.last_write_time() >= spared) fs::remove(blob.path());
   }
 }
 
 BlobStore::Incoming::Incoming(BlobStore& store) : store_(store), file_(store.folder_ / "incoming" / random_id()) {
   descriptor_ = ::open(file_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
   if (descriptor_ < 0) unwritable(file_);
-  const std::scoped_lock lock(store_.mutex_);
-  ++store_.incoming_;
 }
 
 BlobStore::Incoming::~Incoming() {
   ::close(descriptor_);
   ::unlink(file_.c_str());
-  const std::scoped_lock lock(store_.mutex_);
-  --store_.incoming_;
 }
 
 void BlobStore::Incoming::write(std::string_view piece) {
@@ -108,7 +122,6 @@ void BlobStore::Incoming::write(std::string_view piece) {
 }
 
 StoredFile BlobStore::Incoming::finish(const std::string& name) {
-  if (::fsync(descriptor_) != 0) unwritable(file_);
   const std::string sha256 = sum_.fingerprint().hex();
   store_.place(file_, sha256);
   return {name, bytes_, sha256};

@@ -1,11 +1,11 @@
 // Files of the service, named by their SHA-256: uploads come in piece by piece, artifacts by a link, and the same bytes are kept once.
 //
-// A blob appears whole or not at all: it is written beside its place and renamed. Nothing refers to a path of a client's.
+// A blob appears whole or not at all: it is written beside its place and linked there. Nothing refers to a path of a client's.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <filesystem>
-#include <mutex>
 #include <set>
 #include <string>
 #include <string_view>
@@ -27,11 +27,11 @@ class BlobStore {
   StoredFile adopt(const std::filesystem::path& file, const std::string& name);
   /// The same by a copy: of a file that others may write to.
   StoredFile copy(const std::filesystem::path& file, const std::string& name);
-  /// Removes whatever is not named. `in_use` is asked once no blob can appear.
+  /// Removes whatever `in_use` does not name and was not placed within the last `spared` seconds: what has just come in may not be in use
+  /// yet.
   template <class InUse>
-  void keep_only(InUse&& in_use) {
-    const std::scoped_lock lock(mutex_);
-    if (incoming_ == 0) remove_others(in_use());
+  void keep_only(InUse&& in_use, std::chrono::seconds spared) {
+    remove_others(in_use(), spared);
   }
 
   /// A blob that is being received. Not finished, it leaves no trace.
@@ -57,12 +57,10 @@ class BlobStore {
   };
 
  private:
-  void remove_others(const std::vector<std::string>& in_use) const;
+  void remove_others(const std::vector<std::string>& in_use, std::chrono::seconds spared) const;
   void place(const std::filesystem::path& from, const std::string& sha256) const;
 
   std::filesystem::path folder_;
-  std::mutex mutex_;
-  int incoming_ = 0;
 };
 
 }  // namespace standin

@@ -118,14 +118,7 @@ Submission JobStore::submit(const NewJob& job, const std::string& key) {
   const std::string id = random_id();
   const std::scoped_lock lock(mutex_);
   Transaction transaction(database_);
-  if (!key.empty()) {
-    Query known = database_.query("SELECT request_sha256, job FROM idempotency WHERE owner = ? AND key = ?", job.owner, key);
-    if (known.step()) {
-      if (known.text(0) != digest)
-        throw Failure(ErrorWord::kKeyReused, "Idempotency-Key " + key + " came before, with another body, and made job " + known.text(1));
-      return {find_locked(job.owner, known.text(1)).value(), true};
-    }
-  }
+  if (const auto known = earlier_locked(job.owner, key, digest)) return {*known, true};
   {
     Query queued = database_.query("SELECT count(*) FROM job WHERE state = 'queued'");
     if (queued.step() && static_cast<std::size_t>(queued.integer(0)) >= most_queued_)
@@ -142,6 +135,20 @@ Submission JobStore::submit(const NewJob& job, const std::string& key) {
   transaction.commit();
   changed(id);
   return {made, false};
+}
+
+std::optional<Job> JobStore::earlier_locked(const std::string& owner, const std::string& key, const std::string& request_sha256) {
+  if (key.empty()) return std::nullopt;
+  Query known = database_.query("SELECT request_sha256, job FROM idempotency WHERE owner = ? AND key = ?", owner, key);
+  if (!known.step()) return std::nullopt;
+  if (known.text(0) != request_sha256)
+    throw Failure(ErrorWord::kKeyReused, "Idempotency-Key " + key + " came before, with another body, and made job " + known.text(1));
+  return find_locked(owner, known.text(1));
+}
+
+std::optional<Job> JobStore::earlier(const std::string& owner, const std::string& key, const json& request) {
+  const std::scoped_lock lock(mutex_);
+  return earlier_locked(owner, key, sha256_hex(request.dump()));
 }
 
 void JobStore::write_files(const std::string& id, const char* purpose, const std::map<std::string, StoredFile>& files) {

@@ -41,6 +41,8 @@ class JobStore {
 
   /// `key`: of Idempotency-Key, or empty. Throws Failure(kKeyReused) where it came with another body, Failure(kQueueFull).
   Submission submit(const NewJob& job, const std::string& key);
+  /// What came with that key before; nothing where the key is empty or new. Throws Failure(kKeyReused).
+  [[nodiscard]] std::optional<Job> earlier(const std::string& owner, const std::string& key, const nlohmann::json& request);
   /// Of this owner; an empty owner sees all.
   [[nodiscard]] std::optional<Job> find(const std::string& owner, const std::string& id);
   [[nodiscard]] JobPage list(const std::string& owner, const JobFilter& filter);
@@ -79,6 +81,7 @@ class JobStore {
 
  private:
   Job job_at(Query& row) const;
+  std::optional<Job> earlier_locked(const std::string& owner, const std::string& key, const std::string& request_sha256);
   std::optional<Job> find_locked(const std::string& owner, const std::string& id);
   void add_event(const Job& job);
   void changed(const std::string& id) const;

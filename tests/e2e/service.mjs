@@ -232,6 +232,33 @@ test("verify looks at the placement of a job", async () => {
   assert.ok(end.artifacts.some(({ path }) => path === "verify.json"));
 });
 
+test("what strangers gave is never a page, and hostile bodies end nothing", async () => {
+  const upload = await (await fetch(`${url}/v1/uploads?name=evil%FF.html`, { method: "POST", body: "<script>alert(1)</script>", headers: { "Content-Type": "application/octet-stream" } })).json();
+  const { body } = await post(`${url}/v1/jobs`, { ...place, scene: { upload: upload.id } }, { "Idempotency-Key": "evil" });
+  assert.equal((await untilEnded(url, body.id)).state, "failed");
+  const scene = await fetch(`${url}/v1/jobs/${body.id}/scene`);
+  assert.equal(scene.headers.get("content-type"), "application/octet-stream");
+  assert.match(scene.headers.get("content-security-policy"), /sandbox/);
+  await fetch(`${url}/v1/uploads/${upload.id}`, { method: "DELETE" });
+  assert.equal((await post(`${url}/v1/jobs`, { ...place, scene: { upload: upload.id } }, { "Idempotency-Key": "evil" })).body.id, body.id, "a key replays though its upload is gone");
+  for (const text of ["[".repeat(60_000), `{"kind":"survey","dry_run":${"[".repeat(20_000)}`, `{"a":"${"\\\\".repeat(3)}[[["}`]) {
+    const answer = await fetch(`${url}/v1/jobs`, { method: "POST", body: text, headers: { "Content-Type": "application/json" } });
+    assert.ok([400, 422].includes(answer.status), `${answer.status}`);
+  }
+  assert.equal((await fetch(`${url}/v1/jobs`, { method: "POST", body: "{}", headers: { Origin: "x", "Content-Type": "application/json" } })).status, 403);
+  const head = await exchange(`HEAD /v1/jobs/${body.id}/events HTTP/1.1\r\nHost: localhost\r\n\r\nGET /healthz HTTP/1.1\r\nHost: localhost\r\n\r\n`);
+  assert.equal(head.match(/HTTP\/1\.1 200/g).length, 2, head);
+});
+
+test("a job that uses up its processor time says so, at its first attempt", async () => {
+  const short = await serve("short", "--worker-cpu-hours", "0.0005");
+  const { body } = await post(`${short.url}/v1/jobs`, { ...place, spec: { ...spec, visibility: { mode: "on", rays: 100_000_000, missed_share: 1e-6 } } });
+  const job = await untilEnded(short.url, body.id);
+  assert.deepEqual([job.state, job.error.word, job.attempts], ["failed", "worker_lost", 1]);
+  assert.match(job.error.detail, /processor time/);
+  await stop(short);
+});
+
 test("with tokens, nobody sees what is another's", async () => {
   const tokens = join(folder, "tokens");
   writeFileSync(tokens, `# owners\nanna ${sha256("a-token")}\nbert ${sha256("b-token")}\n`);

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "placement/runtime/placement.h"
-#include "runtime/placement_lookup.h"
+#include "render/base/placement_lookup.h"
 #include "tests/support/golden.h"
 
 namespace standin {

@@ -96,6 +96,12 @@ TEST(WorkFolder, NamesOfClientsAreMadeHarmless) {
   EXPECT_EQ(harmless_name(std::string(500, 'a') + ".glb", "x").size(), 120U);
   EXPECT_TRUE(harmless_name(std::string(500, 'a') + ".glb", "x").ends_with(".glb"));
   EXPECT_EQ(harmless_name("", "x"), "x");
+  EXPECT_EQ(harmless_name("a\xff"
+                          "b.glb",
+                          "x"),
+            "a\uFFFD"
+            "b.glb");
+  EXPECT_NO_THROW((void)nlohmann::json(harmless_name(std::string(117, 'a') + "\u00e9\u00e9.glb", "x")).dump());
 }
 
 }  // namespace

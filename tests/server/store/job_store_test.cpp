@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "render/base/error.h"
+#include "render/base/staged_file.h"
 #include "server/store/blob_store.h"
 #include "tests/support/temp_folder.h"
 
@@ -172,17 +173,26 @@ TEST_F(BlobStoreTest, WhatIsNotFinishedLeavesNoTrace) {
   EXPECT_TRUE(std::filesystem::is_empty(root_ / "blobs/incoming"));
 }
 
-TEST_F(BlobStoreTest, KeepsWhatIsInUseAndNothingElseUnlessSomethingComesIn) {
-  BlobStore::Incoming first(blobs_);
-  first.write("abc");
-  (void)first.finish("x");
-  blobs_.keep_only([] { return std::vector<std::string>{}; });
-  EXPECT_TRUE(blobs_.holds(kAbc)) << "it has come in, and nobody had the time to say that it is in use";
-  BlobStore later(root_ / "blobs");
-  later.keep_only([] { return std::vector<std::string>{kAbc}; });
-  EXPECT_TRUE(later.holds(kAbc));
-  later.keep_only([] { return std::vector<std::string>{}; });
-  EXPECT_FALSE(later.holds(kAbc));
+TEST_F(BlobStoreTest, KeepsWhatIsInUseOrCameInAMomentAgo) {
+  BlobStore::Incoming incoming(blobs_);
+  incoming.write("abc");
+  (void)incoming.finish("x");
+  const auto nothing = [] { return std::vector<std::string>{}; };
+  blobs_.keep_only(nothing, std::chrono::seconds(60));
+  EXPECT_TRUE(blobs_.holds(kAbc)) << "nobody had the time to say that it is in use";
+  blobs_.keep_only([] { return std::vector<std::string>{kAbc}; }, std::chrono::seconds(0));
+  EXPECT_TRUE(blobs_.holds(kAbc));
+  blobs_.keep_only(nothing, std::chrono::seconds(0));
+  EXPECT_FALSE(blobs_.holds(kAbc));
+}
+
+TEST_F(BlobStoreTest, ABlobThatACrashCutIsReplaced) {
+  std::filesystem::create_directories(blobs_.path_of(kAbc).parent_path());
+  write_file(blobs_.path_of(kAbc), "a");
+  BlobStore::Incoming incoming(blobs_);
+  incoming.write("abc");
+  (void)incoming.finish("x");
+  EXPECT_EQ(read_file(blobs_.path_of(kAbc)), "abc");
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Which part of a placement a view uses: runtime/placement_lookup.h in TypeScript, step by step the same, held to the same golden queries.
+// Which part of a placement a view uses: render/base/placement_lookup.h in TypeScript, step by step the same, held to the same golden queries.
 // That header words the rule of borders and ties. find() allocates no more than its answer.
 
 import type { Cell, FaceName, Interval, Placement, Vector } from "./placement";
