@@ -142,7 +142,7 @@ async function cancel(cancels = 20, seed = 1) {
     if (job.state === "cancelled") took.push(performance.now() - start);
     await fetch(`${url}/v1/jobs/${id}`, { method: "DELETE" });
   }
-  promise(took.length > 0 && Math.max(...took) <= 2000, `${took.length} of ${cancels} were cancelled before their end: median ${quantile(took, 0.5).toFixed(0)} ms, slowest ${Math.max(...took).toFixed(0)} ms`);
+  promise(took.length >= cancels / 2 && Math.max(...took) <= 2000, `${took.length} of ${cancels} were cancelled before their end: median ${quantile(took, 0.5).toFixed(0)} ms, slowest ${Math.max(...took).toFixed(0)} ms`);
   promise(workers().length === 0 && readdirSync(join(folder, "data/work")).length === 0, "no worker and no work folder is left");
   await killServer("SIGTERM");
 }
@@ -216,7 +216,8 @@ async function load(pollers = 200, streams = 50, seconds = 60) {
   promise(busy.wrong.length === 0 && refused === 0, `${busy.times.length} requests of ${pollers} clients in ${wall_s.toFixed(1)} s beside ${streams} event streams (${heard} pieces heard): ${busy.wrong.length} errors, ${refused} refused`);
   promise(server <= 0.05 * worker, `server ${server.toFixed(2)} s of processor time, ${((1e3 * server) / busy.times.length).toFixed(3)} s for 1,000 requests; workers ${worker.toFixed(1)} s: ${((100 * server) / worker).toFixed(1)} %`);
   console.log(`       GET /v1/jobs/{id}: median ${quantile(busy.times, 0.5).toFixed(2)} ms, p99 ${p99.busy.toFixed(2)} ms; idle server: median ${quantile(idle.times, 0.5).toFixed(2)}, p99 ${p99.idle.toFixed(2)} ms; ratio of p99 ${(p99.busy / p99.idle).toFixed(2)}`);
-  console.log(`       memory of the server: ${rssBefore.toFixed(1)} MB before, ${rss_mb(child.pid).toFixed(1)} MB after`);
+  const rssAfter = rss_mb(child.pid);
+  promise(rssAfter < rssBefore + 50, `memory of the server: ${rssBefore.toFixed(1)} MB before, ${rssAfter.toFixed(1)} MB after`);
   await killServer("SIGTERM");
   promise(workers().length === 0, "no worker is left");
 }
