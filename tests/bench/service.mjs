@@ -3,14 +3,16 @@
 //     node tests/bench/service.mjs kill   BINARY SCENE [JOBS] [KILLS] [SEED]
 //     node tests/bench/service.mjs cancel BINARY SCENE [CANCELS] [SEED]
 //     node tests/bench/service.mjs load   BINARY SCENE [POLLERS] [STREAMS] [SECONDS]
+//     node tests/bench/service.mjs hostile BINARY SCENE [REQUESTS] [SEED]
 //
 // kill: server or worker, in turn by chance, at random moments over a queue of jobs: none lost, none doubled, no orphan, the bytes of an
 // undisturbed run. cancel: at random moments: how long it takes, what is left. load: clients that poll and listen while a job runs: errors, the
-// server's memory and processor time, and the 99th percentile of GET /v1/jobs/{id} beside that of an idle server. Exits with 1 where a promise is broken.
-import { spawn, spawnSync } from "node:child_process";
-import { createHash } from "node:crypto";
+// server's memory and processor time, and the 99th percentile of GET /v1/jobs/{id} beside that of an idle server. hostile: requests that are
+// malformed as HTTP, as JSON, as a body of ours, or as an upload: no answer above 499 but those that the routes name, and the server lives. Exits with 1 where a promise is broken.
+import { spawn } from "node:child_process";
 import { cpSync, existsSync, mkdtempSync, mkdirSync, readFileSync, readdirSync, rmSync } from "node:fs";
 import { Agent, request } from "node:http";
+import { connect } from "node:net";
 import { tmpdir } from "node:os";
 import { basename, dirname, join, resolve } from "node:path";
 import { fileURLToPath } from "node:url";
@@ -222,9 +224,100 @@ async function load(pollers = 200, streams = 50, seconds = 60) {
   promise(workers().length === 0, "no worker is left");
 }
 
-if (!existsSync(binary ?? "") || !["kill", "cancel", "load"].includes(what)) {
-  console.error("node tests/bench/service.mjs kill|cancel|load BINARY SCENE ...");
+/** Raw bytes to the server; what it answers until it closes or is silent. */
+function exchange(url, bytes) {
+  const { hostname, port } = new URL(url);
+  return new Promise((done) => {
+    const socket = connect(Number(port), hostname, () => socket.end(bytes));
+    let got = "";
+    socket.setTimeout(2000, () => socket.destroy());
+    socket.on("data", (piece) => (got += piece.toString("latin1")));
+    socket.on("error", () => {});
+    socket.on("close", () => done(got));
+  });
+}
+
+/** Requests that no honest client sends. */
+class Hostile {
+  constructor(seed, sceneBytes) {
+    this.chance = random(seed);
+    this.sceneBytes = sceneBytes;
+  }
+  below(n) {
+    return Math.floor(this.chance() * n);
+  }
+  pick(list) {
+    return list[this.below(list.length)];
+  }
+  text(most) {
+    return Array.from({ length: this.below(most) }, () => String.fromCharCode(this.below(256))).join("");
+  }
+  value(depth = 0) {
+    const kinds = [
+      () => null, () => this.chance() < 0.5, () => this.pick([0, -1, 1e308, -1e308, 1e-320, 4294967296, -9223372036854775808, 0.1]), () => this.text(20),
+      () => "x".repeat(this.below(5000)), () => this.pick(["../../etc/passwd", "path:/etc/passwd", "file:///etc/passwd", "\u0000", "\ud800", "%2e%2e"]),
+      () => (depth > 3 ? [] : Array.from({ length: this.below(4) }, () => this.value(depth + 1))),
+      () => (depth > 3 ? {} : Object.fromEntries(Array.from({ length: this.below(4) }, () => [this.pick(["a", "budget_ms", "kind", "name", "upload", "a/b~"]), this.value(depth + 1)]))),
+    ];
+    return this.pick(kinds)();
+  }
+  /** A good body with some of it changed. */
+  body() {
+    const body = place(1);
+    for (let i = 0; i <= this.below(3); ++i) {
+      const holder = this.pick([body, body.spec, body.spec?.view_space, body.scene, body.target].filter((part) => part !== null && typeof part === "object"));
+      const keys = Object.keys(holder);
+      if (this.chance() < 0.3) delete holder[this.pick(keys)];
+      else holder[this.chance() < 0.6 ? this.pick(keys) : this.pick(["arguments", "dry_run", "job", "label", "cache", "camera", "x"])] = this.value();
+    }
+    let text = JSON.stringify(body);
+    if (this.chance() < 0.3) text = text.slice(0, this.below(text.length)) + this.text(5) + text.slice(this.below(text.length));
+    return text;
+  }
+  path() {
+    return this.pick(["/", "/v1/jobs", "/v1/jobs/", "/v1/jobs/none/events", "/v1/jobs/../jobs", "/v1/uploads?name=", "/v1/uploads/%00", "/%", "/v1/jobs?limit=-1", "/v1/jobs?after=99999999999999999999", "//", "/v1/jobs/none/artifacts/../../x", `/${this.text(30)}`]);
+  }
+  http() {
+    const method = this.pick(["GET", "POST", "PUT", "DELETE", "HEAD", "OPTIONS", "TRACE", "\0", "G E T", "x".repeat(this.below(9000))]);
+    const headers = [`Host: ${this.pick(["localhost", "127.0.0.1", "evil.example", "", "[::1]:x"])}`];
+    for (let i = this.below(6); i > 0; --i)
+      headers.push(this.pick(["Content-Length: -1", "Content-Length: 5", "Content-Length: 99999999999999999999", "Transfer-Encoding: chunked", "Transfer-Encoding: gzip", "Range: bytes=5-1", "Expect: 100-continue", "Content-Type: application/json", "Content-Type: application/octet-stream", "Origin: null", `Idempotency-Key: ${"k".repeat(this.below(400))}`, "Last-Event-ID: -9", `X-${this.text(10)}`, "Connection: close, keep-alive"]));
+    return Buffer.from(`${method} ${this.path()} ${this.pick(["HTTP/1.1", "HTTP/1.0", "HTTP/9.9", ""])}\r\n${headers.join("\r\n")}\r\n\r\n${this.text(60)}`, "latin1");
+  }
+  json() {
+    const body = Buffer.from(this.body());
+    return Buffer.concat([Buffer.from(`POST /v1/jobs HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\nConnection: close\r\nContent-Length: ${body.length}\r\n\r\n`), body]);
+  }
+  upload() {
+    const bytes = Buffer.from(this.sceneBytes.subarray(0, this.below(this.sceneBytes.length)));
+    for (let i = this.below(50); i > 0; --i) if (bytes.length > 0) bytes[this.below(Math.min(bytes.length, 4000))] = this.below(256);
+    return Buffer.concat([Buffer.from(`POST /v1/uploads?name=${encodeURIComponent(this.text(12))}.glb HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/octet-stream\r\nConnection: close\r\nContent-Length: ${bytes.length + this.pick([0, 0, 0, 1000])}\r\n\r\n`), bytes]);
+  }
+  next() {
+    return this.pick([() => this.http(), () => this.json(), () => this.json(), () => this.upload()])();
+  }
+}
+
+async function hostile(requests = 1000, seed = 1) {
+  const url = await serve("--queue", "5", "--deadline-minutes", "0.2");
+  const strange = new Hostile(seed, readFileSync(scene));
+  const statuses = {};
+  for (let i = 0; i < requests; ++i) {
+    const status = (await exchange(url, strange.next())).match(/^HTTP\/1\.[01] (?!100)(\d+)|\r\n\r\nHTTP\/1\.[01] (\d+)/);
+    const said = status ? (status[1] ?? status[2]) : "none";
+    statuses[said] = (statuses[said] ?? 0) + 1;
+    if (child.exitCode !== null || child.signalCode !== null) break;
+  }
+  promise(child.exitCode === null && child.signalCode === null && (await get(`${url}/healthz`)).status === "ok", `${requests} hostile requests (seed ${seed}); the server lives`);
+  promise(Object.keys(statuses).every((status) => status < "500" || ["503", "505", "507", "none"].includes(status)), `answers by status: ${JSON.stringify(statuses)}`);
+  for (const { id, state } of (await get(`${url}/v1/jobs?limit=200`)).jobs) if (!ended({ state })) await post(`${url}/v1/jobs/${id}/cancel`, {});
+  await killServer("SIGTERM");
+  promise(workers().length === 0, "no worker is left");
+}
+
+if (!existsSync(binary ?? "") || !["kill", "cancel", "load", "hostile"].includes(what)) {
+  console.error("node tests/bench/service.mjs kill|cancel|load|hostile BINARY SCENE ...");
   process.exit(2);
 }
-await { kill, cancel, load }[what](...numbers.map(Number));
+await { kill, cancel, load, hostile }[what](...numbers.map(Number));
 process.exit();
