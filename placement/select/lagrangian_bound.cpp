@@ -20,9 +20,9 @@ constexpr double kWorthwhileGain = 1e-3;  // of the known solution's bytes, by k
 constexpr float kKept = 0.95F;            // of the use so far, each time a constraint is visited
 constexpr float kLeastShare = 0.005F;
 
-// All sweeps together pass over so many gains at most, less than a minute: with a thousand million of them the bound would take longer than
+// All sweeps together pass over so many gains at most, some twenty seconds: with a thousand million of them the bound would take longer than
 // everything it judges. The first sweeps gain most of it.
-constexpr std::uint64_t kMostGains = 500'000'000;
+constexpr std::uint64_t kMostGains = 200'000'000;
 
 int affordable_sweeps(std::uint64_t gains, int asked) {
   return static_cast<int>(std::min(static_cast<std::uint64_t>(std::max(asked, 0)), kMostGains / std::max<std::uint64_t>(gains, 1)));
