@@ -20,8 +20,8 @@ constexpr double kWorthwhileGain = 1e-3;  // of the known solution's bytes, by k
 constexpr float kKept = 0.95F;            // of the use so far, each time a constraint is visited
 constexpr float kLeastShare = 0.005F;
 
-// All sweeps together pass over so many gains at most, some twenty seconds: with a thousand million of them the bound would take longer than
-// everything it judges. The first sweeps gain most of it.
+// All sweeps together pass over so many gains at most, some twenty seconds: with a thousand million of them the bound would take longer
+// than everything it judges. The first sweeps gain most of it.
 constexpr std::uint64_t kMostGains = 200'000'000;
 
 int affordable_sweeps(std::uint64_t gains, int asked) {
@@ -30,7 +30,8 @@ int affordable_sweeps(std::uint64_t gains, int asked) {
 
 }  // namespace
 
-BytesSplit::BytesSplit(const SelectionProblem& problem, const TreeOrder& order, const Columns& columns, const std::vector<bool>& ignored)
+BytesSplit::BytesSplit(const SelectionProblem& problem, const TreeOrder& order, const Columns& columns, const std::vector<bool>& ignored,
+                       std::uint64_t most_gains)
     : problem_(problem),
       columns_(columns),
       column_(problem, order),
@@ -44,12 +45,26 @@ BytesSplit::BytesSplit(const SelectionProblem& problem, const TreeOrder& order, 
       used_(problem.candidate_count(), 0.0F) {
   for (std::uint32_t q = 0; q < problem.deficit.size(); ++q)
     if (problem.deficit[q] > kLeastDeficit && (ignored.empty() || !ignored[q / problem.stages])) active_.push_back(q);
+  if (most_gains < UINT64_MAX) thin_out(most_gains);
   for (const std::uint32_t q : active_) {
     load(q);
     gains_ += column_.size();
     for (std::uint32_t i = 0; i < column_.size(); ++i) ++demands_[column_.candidate(i)];
   }
   keep_as_best();
+}
+
+void BytesSplit::thin_out(std::uint64_t most_gains) {
+  std::uint64_t gains = 0;
+  for (const std::uint32_t q : active_) {
+    load(q);
+    gains += column_.size();
+  }
+  const std::uint64_t step = (gains + most_gains - 1) / std::max<std::uint64_t>(most_gains, 1);
+  if (step <= 1) return;
+  std::vector<std::uint32_t> kept;
+  for (std::size_t i = 0; i < active_.size(); i += step) kept.push_back(active_[i]);
+  active_ = std::move(kept);
 }
 
 void BytesSplit::load(std::uint32_t q) {
@@ -229,7 +244,7 @@ bool improve(BytesSplit& split, double aim_bytes, int iterations, const WorkBudg
 
 double lagrangian_bound(const SelectionProblem& problem, const TreeOrder& order, const Columns& columns, const std::vector<bool>& ignored,
                         double aim_bytes, int iterations, const WorkBudget& budget) {
-  BytesSplit split(problem, order, columns, ignored);
+  BytesSplit split(problem, order, columns, ignored, kMostBoundGains);
   SelectionWork without_limit;
   improve(split, aim_bytes, iterations, budget, without_limit);
   return split.certified(budget);

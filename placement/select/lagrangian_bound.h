@@ -26,8 +26,10 @@ namespace standin {
 
 class BytesSplit {
  public:
-  /// Rows of CPVs with `ignored[p]` are dropped.
-  BytesSplit(const SelectionProblem& problem, const TreeOrder& order, const Columns& columns, const std::vector<bool>& ignored);
+  /// Rows of CPVs with `ignored[p]` are dropped; and of others all but every so manieth, where they have more than `most_gains`: the bound
+  /// holds for all of them, since it holds for any part.
+  BytesSplit(const SelectionProblem& problem, const TreeOrder& order, const Columns& columns, const std::vector<bool>& ignored,
+             std::uint64_t most_gains = UINT64_MAX);
 
   /// One sweep, forwards and backwards in turn; returns the bound that the split now gives, without its rounding error.
   double sweep(const WorkBudget& budget);
@@ -53,6 +55,7 @@ class BytesSplit {
     float share = 0.0F;
   };
 
+  void thin_out(std::uint64_t most_gains);
   void load(std::uint32_t q);
   [[nodiscard]] double payment(const PricedColumn::Group& group, std::uint32_t position) const;
   template <class Visit>
@@ -87,6 +90,9 @@ class BytesSplit {
   std::uint64_t gains_ = 0;
   std::uint64_t work_ = 0;
 };
+
+/// Of a split for a bound alone: ten sweeps of it, at least, stay within some twenty seconds.
+inline constexpr std::uint64_t kMostBoundGains = 20'000'000;
 
 /// Sweeps and steps on the best split; `aim_bytes`: of a known solution (it scales the steps). Fewer than `iterations` are made on
 /// very large problems, and where the latest ones gained next to nothing of these bytes. Returns false when the work limit ended it.

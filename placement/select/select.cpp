@@ -52,7 +52,7 @@ class Selector {
   double lower_bound(double known_bytes) {
     cover_ = std::make_unique<Cover>(problem_, order_);
     set_aside();
-    BytesSplit split(problem_, order_, columns_, ignored_);
+    BytesSplit split(problem_, order_, columns_, ignored_, kMostBoundGains);
     improve(split, known_bytes, config_.bound_iterations, budget_, work_);
     return split.certified(budget_);
   }
@@ -197,7 +197,7 @@ class Selector {
   }
 
   void bound() {
-    BytesSplit split(problem_, order_, columns_, ignored_);
+    BytesSplit split(problem_, order_, columns_, ignored_, kMostBoundGains);
     if (!improve(split, result_.summary.bytes, config_.bound_iterations, budget_, work_))
       result_.summary.cut_short.push_back({"lower bound", result_.summary.bytes, result_.summary.bytes});
     result_.summary.lower_bound_bytes = split.certified(budget_);

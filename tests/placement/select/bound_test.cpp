@@ -34,6 +34,25 @@ TEST(LagrangianBound, NeverAboveTheOptimum) {
   std::printf("%d instances, mean bound / optimum %.3f\n", count, sum_ratio / count);
 }
 
+TEST(LagrangianBound, HoldsWhereOnlySomeRowsAreLookedAt) {
+  int thinned = 0;
+  for (std::uint64_t seed = 1; seed <= 100; ++seed) {
+    const auto problem = random_problem(seed, {.cpvs = 4, .stages = 1, .integers = false});
+    const auto exact = BruteForce(problem).optimum();
+    if (!exact) continue;
+    const TreeOrder order(problem.parent);
+    const Columns columns(problem, order);
+    BytesSplit all(problem, order, columns, {});
+    BytesSplit some(problem, order, columns, {}, all.gains() / 2);
+    SelectionWork work;
+    (void)improve(some, exact->bytes, 100, {}, work);
+    ASSERT_LE(some.certified({}), exact->bytes) << "seed " << seed;
+    EXPECT_GT(some.certified({}), 0.0) << "seed " << seed;
+    thinned += some.gains() < all.gains() ? 1 : 0;
+  }
+  EXPECT_GT(thinned, 20);
+}
+
 TEST(LagrangianBound, TightForOneCpvOfEqualCandidates) {
   // Deficit 3 and gains 1 at 2 bytes: the relaxation is exact at 6 bytes.
   std::vector<Row> rows;
