@@ -284,10 +284,9 @@ HttpServer::HttpServer(HttpApplication& application, const std::string& address,
   const sockaddr_in socket = socket_address(address, port);
   loop_->daemon = MHD_start_daemon(MHD_USE_EPOLL_INTERNAL_THREAD | MHD_ALLOW_SUSPEND_RESUME, 0, nullptr, nullptr, &Loop::on_request,
                                    loop_.get(), MHD_OPTION_SOCK_ADDR, &socket, MHD_OPTION_CONNECTION_LIMIT, limits.connections,
-                                   MHD_OPTION_PER_IP_CONNECTION_LIMIT, limits.connections_of_one_address, MHD_OPTION_CONNECTION_TIMEOUT,
-                                   limits.silent_s, MHD_OPTION_CONNECTION_MEMORY_LIMIT, limits.head_bytes, MHD_OPTION_NOTIFY_COMPLETED,
-                                   &Loop::on_completed, loop_.get(), MHD_OPTION_NOTIFY_CONNECTION, &Loop::on_connection, loop_.get(),
-                                   MHD_OPTION_LISTENING_ADDRESS_REUSE, 1U, MHD_OPTION_END);
+                                   MHD_OPTION_CONNECTION_TIMEOUT, limits.silent_s, MHD_OPTION_CONNECTION_MEMORY_LIMIT, limits.head_bytes,
+                                   MHD_OPTION_NOTIFY_COMPLETED, &Loop::on_completed, loop_.get(), MHD_OPTION_NOTIFY_CONNECTION,
+                                   &Loop::on_connection, loop_.get(), MHD_OPTION_LISTENING_ADDRESS_REUSE, 1U, MHD_OPTION_END);
   if (loop_->daemon == nullptr)
     throw Failure(ErrorWord::kInternal, "cannot listen on " + address + ":" + std::to_string(port) + ": " + std::strerror(errno));
 }

@@ -28,12 +28,11 @@ class HttpApplication {
 
 struct HttpLimits {
   unsigned connections = 1000;
-  unsigned connections_of_one_address = 0;  // 0: no limit of its own
-  unsigned silent_s = 30;                   // until a connection on which nothing moves is closed
-  double head_s = 30.0;                     // until a request's head must be there
-  double least_bytes_per_s = 1000.0;        // of a body, on average, once it has been coming for as long
-  std::size_t head_bytes = 32 * 1024;       // of a request's line and headers
-  unsigned streams = 200;                   // that may be open at a time
+  unsigned silent_s = 30;              // until a connection on which nothing moves is closed
+  double head_s = 30.0;                // until a request's head must be there
+  double least_bytes_per_s = 1000.0;   // of a body, on average, once it has been coming for as long
+  std::size_t head_bytes = 32 * 1024;  // of a request's line and headers
+  unsigned streams = 200;              // that may be open at a time
   double heartbeat_s = 15.0;
 };
 

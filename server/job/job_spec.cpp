@@ -280,15 +280,14 @@ bool is_section(const std::string& key) {
   return false;
 }
 
-void read_object(JobSpec& spec, const json& object, const std::string& prefix, const std::string& source) {
+void visit_settings(const json& object, const SettingPlace& section, const std::function<void(const SettingPlace&, const json&)>& visit) {
   for (const auto& [name, value] : object.items()) {
-    const std::string key = prefix.empty() ? name : prefix + "." + name;
-    if (const SpecField* field = find_field(key))
-      set_field(spec, *field, value, source + key);
-    else if (value.is_object() && is_section(key))
-      read_object(spec, value, key, source);
+    SettingPlace place{nullptr, section.key.empty() ? name : section.key + "." + name, section.pointer / name};
+    place.field = find_field(place.key);
+    if (place.field == nullptr && value.is_object() && is_section(place.key))
+      visit_settings(value, place, visit);
     else
-      throw Failure(ErrorWord::kBadConfig, source + key + " = " + value.dump() + " is not a known setting");
+      visit(place, value);
   }
 }
 
@@ -334,8 +333,15 @@ void set_field_from_text(JobSpec& spec, const SpecField& field, const std::strin
   set_field(spec, field, value, field.flag);
 }
 
+void for_each_setting(const json& object, const std::function<void(const SettingPlace&, const json&)>& visit) {
+  visit_settings(object, SettingPlace{nullptr, "", json::json_pointer()}, visit);
+}
+
 void read_object_into(JobSpec& spec, const json& object, const std::string& source) {
-  read_object(spec, object, "", source);
+  for_each_setting(object, [&](const SettingPlace& place, const json& value) {
+    if (place.field == nullptr) throw Failure(ErrorWord::kBadConfig, source + place.key + " = " + value.dump() + " is not a known setting");
+    set_field(spec, *place.field, value, source + place.key);
+  });
 }
 
 json to_json(const JobSpec& spec, bool result_only) {
@@ -355,7 +361,7 @@ json changed_settings(const JobSpec& spec) {
 
 JobSpec spec_from_json(const json& object) {
   JobSpec spec;
-  read_object(spec, object, "", "");
+  read_object_into(spec, object, "");
   return spec;
 }
 

@@ -102,6 +102,14 @@ struct SpecField {
 void set_field(JobSpec& spec, const SpecField& field, const nlohmann::json& value, const std::string& place);
 /// Sets one field from the text of a flag.
 void set_field_from_text(JobSpec& spec, const SpecField& field, const std::string& text);
+/// Where a value of a nested object stands: its field, if its key is known, and the way to it.
+struct SettingPlace {
+  const SpecField* field = nullptr;
+  std::string key;                                                        // "view_space.leaf_m"
+  nlohmann::json::json_pointer pointer = nlohmann::json::json_pointer();  // "/view_space/leaf_m"
+};
+/// Visits every value of a nested object of settings; of a section that is no object, the section's.
+void for_each_setting(const nlohmann::json& object, const std::function<void(const SettingPlace&, const nlohmann::json&)>& visit);
 /// Reads the keys of a nested object; `source` prefixes messages. Unknown keys are errors with their path.
 void read_object_into(JobSpec& spec, const nlohmann::json& object, const std::string& source);
 /// Reads a TOML file into `spec`. Unknown keys are errors with their path.

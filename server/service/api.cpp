@@ -83,28 +83,14 @@ void require_length(const HttpRequest& request, std::uint64_t most_bytes) {
                   "a body of " + std::to_string(announced) + " bytes, no more than " + std::to_string(most_bytes) + " are taken");
 }
 
-// Of nested arrays and objects: what reads a body goes down as deep as it is.
-int depth_of(const std::string& text) {
-  int depth = 0, deepest = 0;
-  bool quoted = false;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    if (quoted && text[i] == '\\')
-      ++i;
-    else if (text[i] == '"')
-      quoted = !quoted;
-    else if (!quoted && (text[i] == '[' || text[i] == '{'))
-      deepest = std::max(deepest, ++depth);
-    else if (!quoted && (text[i] == ']' || text[i] == '}'))
-      --depth;
-  }
-  return deepest;
-}
-
+// What reads a body goes down as deep as it is.
 json parsed(const std::string& text) {
   constexpr int kDeepest = 16;
-  if (depth_of(text) > kDeepest)
-    throw Failure(ErrorWord::kBadRequest, "the body is nested more than " + std::to_string(kDeepest) + " deep");
-  json body = json::parse(text, nullptr, false);
+  const auto not_too_deep = [](int depth, json::parse_event_t, const json&) {
+    if (depth > kDeepest) throw Failure(ErrorWord::kBadRequest, "the body is nested more than " + std::to_string(kDeepest) + " deep");
+    return true;
+  };
+  json body = json::parse(text, not_too_deep, false);
   if (body.is_discarded()) throw Failure(ErrorWord::kBadRequest, "the body is not JSON");
   return body;
 }
@@ -159,11 +145,17 @@ Api::Api(ApiConfig config, JobStore& jobs, BlobStore& blobs, Tokens tokens, ApiH
       page_files_(files_of_page(config_.web)) {}
 
 Api::Match Api::match(const HttpRequest& request) {
+  static const std::vector<std::vector<std::string>> patterns = [] {
+    std::vector<std::vector<std::string>> parts;
+    for (const Route& route : routes()) parts.push_back(parts_of(route.pattern));
+    return parts;
+  }();
   const std::vector<std::string> path = parts_of(request.path);
   std::string allowed;
-  for (const Route& route : routes()) {
+  for (std::size_t i = 0; i < patterns.size(); ++i) {
+    const Route& route = routes()[i];
     Match match{&route, {}};
-    if (!fits(parts_of(route.pattern), path, match.path)) continue;
+    if (!fits(patterns[i], path, match.path)) continue;
     if (route.method == request.method || (route.method == "GET" && request.method == "HEAD")) return match;
     if (allowed.find(route.method) == std::string::npos) allowed += (allowed.empty() ? "" : ", ") + route.method;
   }

@@ -45,18 +45,17 @@ WorkerLimits worker_limits_from_json(const nlohmann::json& object) {
   return {object.at("data_bytes"), object.at("cpu_s"), object.at("open_files"), object.at("file_bytes"), object.at("niceness")};
 }
 
-bool confine_this_process(const WorkerLimits& limits, pid_t parent) {
+void confine_this_process(const WorkerLimits& limits, pid_t parent) {
   if (prctl(PR_SET_PDEATHSIG, SIGKILL) != 0) throw Failure(ErrorWord::kInternal, "a worker cannot be tied to its server");
   if (getppid() != parent) throw Failure(ErrorWord::kCancelled, "the server is gone");
   prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0);
   setpriority(PRIO_PROCESS, 0, limits.niceness);
-  const bool no_network = leave_the_network();
+  (void)leave_the_network();
   limit(RLIMIT_DATA, limits.data_bytes, "data");
   limit(RLIMIT_CPU, limits.cpu_s, "processor time", 5);
   limit(RLIMIT_NOFILE, limits.open_files, "open files");
   limit(RLIMIT_FSIZE, limits.file_bytes, "file size");
   limit(RLIMIT_CORE, 1, "core dumps");
-  return no_network;
 }
 
 }  // namespace standin

@@ -23,8 +23,8 @@ struct WorkerLimits {
 [[nodiscard]] nlohmann::json to_json(const WorkerLimits& limits);
 [[nodiscard]] WorkerLimits worker_limits_from_json(const nlohmann::json& object);
 
-/// Limits this process, ties its life to that of `parent`, and takes the network away where the system allows it (returns whether). Throws
+/// Limits this process, ties its life to that of `parent`, and takes the network away where the system allows it. Throws
 /// Failure(kInternal) where a limit cannot be set, Failure(kCancelled) where the parent is gone already.
-bool confine_this_process(const WorkerLimits& limits, pid_t parent);
+void confine_this_process(const WorkerLimits& limits, pid_t parent);
 
 }  // namespace standin

@@ -102,15 +102,13 @@ class Reader {
     return {};
   }
 
-  void settings(JobSpec& spec, const json& object, const std::string& pointer, const std::string& prefix) {
-    if (!object.is_object()) return wrong(pointer, "an object is expected");
-    for (const auto& [name, value] : object.items()) setting(spec, value, pointer + "/" + escaped(name), prefix + name);
+  void settings(JobSpec& spec, const json& object) {
+    if (!object.is_object()) return wrong("/spec", "an object is expected");
+    for_each_setting(object, [&](const SettingPlace& place, const json& value) { setting(spec, place, value); });
   }
 
-  static std::string escaped(std::string name) {  // RFC 6901
-    for (std::size_t i = 0; (i = name.find_first_of("~/", i)) != std::string::npos; i += 2)
-      name.replace(i, 1, name[i] == '~' ? "~0" : "~1");
-    return name;
+  static std::string pointer_to(const std::string& name, const std::string& within = "") {
+    return (json::json_pointer(within) / name).to_string();
   }
 
  private:
@@ -119,21 +117,13 @@ class Reader {
     return name == "job" ? FileReference::Source::kJob : FileReference::Source::kName;
   }
 
-  void setting(JobSpec& spec, const json& value, const std::string& pointer, const std::string& key) {
-    bool is_section = false;
-    for (const SpecField& field : spec_fields()) {
-      if (field.key == key) return known_setting(spec, field, value, pointer);
-      is_section |= field.key.starts_with(key + ".");
-    }
-    if (is_section) return settings(spec, value, pointer, key + ".");
-    wrong(pointer, "is not a known setting");
-  }
-
-  void known_setting(JobSpec& spec, const SpecField& field, const json& value, const std::string& pointer) {
-    if (kServicesOwn.contains(field.key)) return wrong(pointer, "is the service's own to set");
-    if (field.key == "view_space.kind" && value.is_string() && value.get_ref<const std::string&>().starts_with("path:"))
+  void setting(JobSpec& spec, const SettingPlace& place, const json& value) {
+    const std::string pointer = "/spec" + place.pointer.to_string();
+    if (place.field == nullptr) return wrong(pointer, "is not a known setting");
+    if (kServicesOwn.contains(place.key)) return wrong(pointer, "is the service's own to set");
+    if (place.key == "view_space.kind" && value.is_string() && value.get_ref<const std::string&>().starts_with("path:"))
       return wrong(pointer, "path:FILE names a file of the server: give boxes");
-    attempt(pointer, [&] { set_field(spec, field, value, field.key); });
+    attempt(pointer, [&] { set_field(spec, *place.field, value, place.key); });
   }
 
   std::vector<FieldProblem> problems_;
@@ -151,7 +141,7 @@ void read_arguments(Reader& reader, JobKind kind, const json& body, json& argume
   if (!body["arguments"].is_object()) return reader.wrong("/arguments", "an object is expected");
   arguments = body["arguments"];
   for (const auto& [key, value] : arguments.items()) {
-    const std::string pointer = "/arguments/" + Reader::escaped(key);
+    const std::string pointer = Reader::pointer_to(key, "/arguments");
     if (const ArgumentField* field = find_argument(kind, key))
       reader.attempt(pointer, [&, &value_ = value] { check_value(field->schema, value_, field->key); });
     else
@@ -208,7 +198,7 @@ JobRequest parse_job_request(const json& body) {
   if (!body.is_object()) throw InvalidBody(std::vector<FieldProblem>{{"", "an object is expected"}});
   static const std::set<std::string> kKnown = {"kind", "label", "scene", "target", "baseline", "job", "spec", "arguments", "dry_run"};
   for (const auto& [key, value] : body.items())
-    if (!kKnown.contains(key)) reader.wrong("/" + Reader::escaped(key), "is not a known field");
+    if (!kKnown.contains(key)) reader.wrong(Reader::pointer_to(key), "is not a known field");
 
   JobRequest request;
   const auto kind = std::ranges::find(kKindNames, reader.text(body, "kind", 20));
@@ -220,7 +210,7 @@ JobRequest parse_job_request(const json& body) {
   request.target = reader.file(body, "target", kTargetSources);
   request.baseline = reader.file(body, "baseline", kBaselineSources);
   request.placed_job = reader.text(body, "job", 64);
-  if (body.contains("spec")) reader.settings(request.spec, body["spec"], "/spec", "");
+  if (body.contains("spec")) reader.settings(request.spec, body["spec"]);
   if (body.contains("dry_run") && !body["dry_run"].is_boolean()) reader.wrong("/dry_run", "true or false is expected");
   request.dry_run = body.contains("dry_run") && body["dry_run"] == true;
   read_arguments(reader, request.kind, body, request.arguments);

@@ -258,7 +258,7 @@ void Scheduler::tidy() {
   if (config_.keep_s > 0.0)
     for (const Job& job : jobs_.finished_before(now_ms() - static_cast<std::int64_t>(1e3 * config_.keep_s))) jobs_.remove("", job.id);
   const std::scoped_lock lock(collecting_);
-  blobs_.keep_only(blobs_in_use_, kSpared);
+  blobs_.keep_only(blobs_in_use_(), kSpared);
   for (const auto& entry : fs::directory_iterator(config_.data / "work")) {
     const auto job = jobs_.find("", entry.path().filename().string());
     if (!job || is_final(job->state)) fs::remove_all(entry.path());

@@ -29,7 +29,6 @@ class WorkerProcess {
   bool ended();
   void ask_to_stop() const;
   void kill() const;
-  [[nodiscard]] pid_t id() const { return id_; }
   /// The signal that ended it; 0: none.
   [[nodiscard]] int signal() const;
   /// Of one that has ended.

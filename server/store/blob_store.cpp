@@ -86,7 +86,7 @@ StoredFile BlobStore::copy(const fs::path& file, const std::string& name) {
   return incoming.finish(name);
 }
 
-void BlobStore::remove_others(const std::vector<std::string>& in_use, std::chrono::seconds spared) const {
+void BlobStore::keep_only(const std::vector<std::string>& in_use, std::chrono::seconds spared) const {
   const auto now = fs::file_time_type::clock::now();
   const std::set<std::string> kept(in_use.begin(), in_use.end());
   for (const auto& shelf : fs::directory_iterator(folder_)) {

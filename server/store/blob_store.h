@@ -29,10 +29,7 @@ class BlobStore {
   StoredFile copy(const std::filesystem::path& file, const std::string& name);
   /// Removes whatever `in_use` does not name and was not placed within the last `spared` seconds: what has just come in may not be in use
   /// yet.
-  template <class InUse>
-  void keep_only(InUse&& in_use, std::chrono::seconds spared) {
-    remove_others(in_use(), spared);
-  }
+  void keep_only(const std::vector<std::string>& in_use, std::chrono::seconds spared) const;
 
   /// A blob that is being received. Not finished, it leaves no trace.
   class Incoming {
@@ -57,7 +54,6 @@ class BlobStore {
   };
 
  private:
-  void remove_others(const std::vector<std::string>& in_use, std::chrono::seconds spared) const;
   void place(const std::filesystem::path& from, const std::string& sha256) const;
 
   std::filesystem::path folder_;

@@ -121,10 +121,6 @@ int Database::changes() const {
   return sqlite3_changes(database_);
 }
 
-std::int64_t Database::last_row() const {
-  return sqlite3_last_insert_rowid(database_);
-}
-
 Transaction::~Transaction() {
   if (!open_) return;
   try {

@@ -80,7 +80,6 @@ class Database {
   }
   /// Rows that the last statement changed.
   [[nodiscard]] int changes() const;
-  [[nodiscard]] std::int64_t last_row() const;
 
  private:
   PreparedStatement& prepared(const std::string& sql);

@@ -177,12 +177,11 @@ TEST_F(BlobStoreTest, KeepsWhatIsInUseOrCameInAMomentAgo) {
   BlobStore::Incoming incoming(blobs_);
   incoming.write("abc");
   (void)incoming.finish("x");
-  const auto nothing = [] { return std::vector<std::string>{}; };
-  blobs_.keep_only(nothing, std::chrono::seconds(60));
+  blobs_.keep_only({}, std::chrono::seconds(60));
   EXPECT_TRUE(blobs_.holds(kAbc)) << "nobody had the time to say that it is in use";
-  blobs_.keep_only([] { return std::vector<std::string>{kAbc}; }, std::chrono::seconds(0));
+  blobs_.keep_only({kAbc}, std::chrono::seconds(0));
   EXPECT_TRUE(blobs_.holds(kAbc));
-  blobs_.keep_only(nothing, std::chrono::seconds(0));
+  blobs_.keep_only({}, std::chrono::seconds(0));
   EXPECT_FALSE(blobs_.holds(kAbc));
 }
 
