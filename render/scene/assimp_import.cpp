@@ -256,8 +256,7 @@ class AssimpReader {
       Texture texture = load_texture(name);
       texture.name = name;
       holed_.push_back(has_holes(texture));
-      scene_.textures.push_back(std::move(texture));
-      known->second = static_cast<std::int32_t>(scene_.textures.size() - 1);
+      known->second = add_texture(import_, std::move(texture));
     } catch (const Failure& failure) {
       if (failure.word() != ErrorWord::kFileMissing && failure.word() != ErrorWord::kFileBroken) throw;
       add_note(scene_, Kind::kWarning, "textures", 1, std::string("left out: ") + failure.what());

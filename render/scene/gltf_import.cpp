@@ -69,7 +69,7 @@ std::vector<std::uint64_t> index_list(const Json& json, const char* key, const s
 class GltfReader {
  public:
   GltfReader(Import& import, std::span<const std::uint8_t> bytes)
-      : import_(import), scene_(import.scene), file_(bytes, import.folder), materials_(file_, import.scene) {}
+      : import_(import), scene_(import.scene), file_(bytes, import.folder), materials_(file_, import) {}
 
   void read() {
     check_extensions();
@@ -307,8 +307,8 @@ class GltfReader {
     if (mode != Mode::kTriangles) mesh.indices = separate(mesh.indices, mode);
     read_triangles_ += mesh.triangle_count();
     if (read_triangles_ > import_.options.max_triangles) {
-      throw Failure(ErrorWord::kFileBroken, place + " brings the scene to " + std::to_string(read_triangles_) +
-                                                " triangles, more than the " + std::to_string(import_.options.max_triangles) + " allowed");
+      throw Failure(ErrorWord::kTooLarge, place + " brings the scene to " + std::to_string(read_triangles_) + " triangles, more than the " +
+                                              std::to_string(import_.options.max_triangles) + " allowed");
     }
     return mesh;
   }

@@ -106,8 +106,7 @@ std::int32_t GltfMaterials::texture_of_image(std::uint64_t image) {
   const auto [place, fresh] = images_.try_emplace(image, -1);
   if (!fresh) return place->second;
   try {
-    scene_.textures.push_back(load_image(image));
-    place->second = static_cast<std::int32_t>(scene_.textures.size() - 1);
+    place->second = add_texture(import_, load_image(image));
   } catch (const Failure& failure) {
     if (failure.word() != ErrorWord::kFileMissing && failure.word() != ErrorWord::kFileBroken) throw;
     add_note(scene_, Kind::kWarning, "textures", 1, std::string("left out: ") + failure.what());

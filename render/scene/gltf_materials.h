@@ -27,7 +27,7 @@ struct GltfMaterial {
 
 class GltfMaterials {
  public:
-  GltfMaterials(GltfFile& file, Scene& scene) : file_(file), scene_(scene) {}
+  GltfMaterials(GltfFile& file, Import& import) : file_(file), import_(import), scene_(import.scene) {}
 
   /// Reads each material once; without an index, glTF's default material.
   [[nodiscard]] const GltfMaterial& material(std::optional<std::uint64_t> index);
@@ -40,6 +40,7 @@ class GltfMaterials {
   [[nodiscard]] Texture load_image(std::uint64_t image);
 
   GltfFile& file_;
+  Import& import_;
   Scene& scene_;
   std::map<std::int64_t, GltfMaterial> materials_;  // by glTF index, -1 for the default
   std::map<std::uint64_t, std::int32_t> images_;    // glTF image to Scene::textures, -1 where it cannot be read

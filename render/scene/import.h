@@ -35,6 +35,9 @@ struct Import {
 /// repairs normals (flat ones where there are none) and texture coordinates. Everything is noted. False if nothing is left.
 [[nodiscard]] bool clean(Mesh& mesh, Scene& scene);
 
+/// Its index in Scene::textures. Throws Failure(kTooLarge) where LoadOptions allow no further one of that size.
+std::int32_t add_texture(Import& import, Texture texture);
+
 void read_gltf(Import& import, std::span<const std::uint8_t> bytes);
 void read_by_assimp(Import& import, const std::filesystem::path& file);
 

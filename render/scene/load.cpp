@@ -90,8 +90,8 @@ void check_not_empty(const Scene& scene, const fs::path& file) {
 
 void check_size(const Scene& scene, const LoadOptions& options) {
   if (scene.triangle_count() <= options.max_triangles) return;
-  throw Failure(ErrorWord::kFileBroken, "the scene draws " + std::to_string(scene.triangle_count()) + " triangles, more than the " +
-                                            std::to_string(options.max_triangles) + " allowed");
+  throw Failure(ErrorWord::kTooLarge, "the scene draws " + std::to_string(scene.triangle_count()) + " triangles, more than the " +
+                                          std::to_string(options.max_triangles) + " allowed");
 }
 
 }  // namespace

@@ -30,10 +30,11 @@ struct LoadOptions {
   std::uint64_t split_triangles = 100000;  // an object with more is split by a kd tree (thesis 1.6); 0: never
   double split_extent = 0.125;             // nor may one be longer than this share of the scene's diagonal; 0: any length
   std::uint64_t max_triangles = 200'000'000;
+  std::uint64_t max_texels = 1'000'000'000;            // of all textures together
   std::vector<std::filesystem::path> texture_folders;  // where else textures may be found by their file name; not for glTF
 };
 
-/// Throws Failure (kFileMissing, kFileBroken, kUriForbidden, kExtensionUnknown, kSceneEmpty).
+/// Throws Failure (kFileMissing, kFileBroken, kUriForbidden, kExtensionUnknown, kSceneEmpty, kTooLarge).
 [[nodiscard]] Scene load_scene(const std::filesystem::path& file, const LoadOptions& options = {});
 
 /// `scene` as one GLB: instances stay instances, textures embedded as PNG; levels of detail are not part of it.

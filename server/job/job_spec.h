@@ -26,6 +26,8 @@ struct JobSpec {
   std::uint64_t split_triangles = 100'000;
   double split_extent = 0.125;
   std::vector<std::string> texture_folders;
+  std::uint64_t max_triangles = 200'000'000;  // drawn, in all; a scene with more is refused
+  std::uint64_t max_texels = 1'000'000'000;   // of all its textures
 
   double fov_y_deg = 45.0;
   int width = 512;

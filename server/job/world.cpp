@@ -142,6 +142,8 @@ LoadOptions load_options(const JobSpec& spec) {
   options.placing = {up_axis(spec.up), metres_per_unit(spec.unit)};
   options.split_triangles = spec.split_triangles;
   options.split_extent = spec.split_extent;
+  options.max_triangles = spec.max_triangles;
+  options.max_texels = spec.max_texels;
   options.texture_folders.assign(spec.texture_folders.begin(), spec.texture_folders.end());
   return options;
 }

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "render/base/rng.h"
+#include "render/image/image_io.h"
 #include "tests/render/scene/glb_maker.h"
 #include "tests/render/scene/temporary_folder.h"
 
@@ -22,6 +23,13 @@ using Kind = LoadNote::Kind;
 ErrorWord failure_of(const GlbMaker& maker, const std::string& part, const LoadOptions& options = {}) {
   const TemporaryFolder folder;
   return load_failure(folder.write("scene.glb", maker.glb()), part, options);
+}
+
+void show_image(GlbMaker& maker, const std::string& bytes) {
+  maker.json["images"] = GlbMaker::Json::array({{{"bufferView", maker.view(bytes.data(), bytes.size())}}});
+  maker.json["textures"] = GlbMaker::Json::array({{{"source", 0}}});
+  maker.json["materials"] = GlbMaker::Json::array({{{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}}});
+  maker.primitive()["material"] = 0;
 }
 
 TEST(GltfBroken, MissingFile) {
@@ -183,16 +191,23 @@ TEST(GltfBroken, NothingLeftIsRefusedWithTheReason) {
 TEST(GltfBroken, TooManyTriangles) {
   LoadOptions options;
   options.max_triangles = 1;
-  EXPECT_EQ(failure_of(square_glb(), "2 triangles", options), ErrorWord::kFileBroken);
+  EXPECT_EQ(failure_of(square_glb(), "2 triangles", options), ErrorWord::kTooLarge);
+}
+
+TEST(GltfBroken, TooManyTexels) {
+  GlbMaker maker = square_glb();
+  show_image(maker, encode_png({"", 4, 2, std::vector<std::uint8_t>(32, 255)}));
+  LoadOptions options;
+  options.max_texels = 8;
+  const TemporaryFolder folder;
+  EXPECT_EQ(load_scene(folder.write("scene.glb", maker.glb()), options).textures.size(), 1U);
+  options.max_texels = 7;
+  EXPECT_EQ(failure_of(maker, "8 texels", options), ErrorWord::kTooLarge);
 }
 
 TEST(GltfBroken, BrokenImageIsANoteOnly) {
   GlbMaker maker = square_glb();
-  const std::string words = "no image";
-  maker.json["images"] = GlbMaker::Json::array({{{"bufferView", maker.view(words.data(), words.size())}}});
-  maker.json["textures"] = GlbMaker::Json::array({{{"source", 0}}});
-  maker.json["materials"] = GlbMaker::Json::array({{{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}}});
-  maker.primitive()["material"] = 0;
+  show_image(maker, "no image");
   const TemporaryFolder folder;
   const Scene scene = load_scene(folder.write("scene.glb", maker.glb()));
   EXPECT_EQ(noted(scene, Kind::kWarning, "textures", "images[0]"), 1U);
