@@ -5,6 +5,7 @@
 #include <string>
 
 #include "render/base/error.h"
+#include "render/image/image_io.h"
 #include "server/files/output_folder.h"
 #include "server/files/placement_json.h"
 #include "server/job/curves.h"
@@ -80,7 +81,7 @@ JobOutcome run_survey(const JobFiles& files, const JobSpec& spec, const WorkBudg
   outcome.metrics = common_metrics(job, clock);
   close_cache(job.cache.get(), spec, outcome.metrics);
   outcome.metrics["causes"] = causes_json(job.world, job.reach.subdivision, job.target.model);
-  outcome.metrics["heat_map"] = heat_map_json(job.reach.subdivision, nullptr, job.target.model);
+  outcome.metrics["heat_map"] = heat_map_json(job.world, job.reach.subdivision, nullptr, job.target.model);
   outcome.metrics["curves"] = {{"estimator", estimator_curve(job.target)}};
   if (spec.budget_ms > 0.0) outcome.metrics["budget_ms"] = spec.budget_ms;
   if (!folder) return outcome;
@@ -125,7 +126,7 @@ JobOutcome run_place(const JobFiles& files, const JobSpec& spec, const WorkBudge
   metrics["curves"] = curves;
   metrics["verify"] = verify_json(verified);
   metrics["image"] = image_json(verified);
-  metrics["heat_map"] = heat_map_json(placed.subdivision, &placed.placement, job.target.model);
+  metrics["heat_map"] = heat_map_json(job.world, placed.subdivision, &placed.placement, job.target.model);
   metrics["causes"] = causes_json(job.world, placed.subdivision, job.target.model);
   metrics.update(
       unsolved_json(job.world, placed.subdivision, placed.placement, placed.selected.selection, job.target.model, spec.budget_ms));
@@ -134,6 +135,7 @@ JobOutcome run_place(const JobFiles& files, const JobSpec& spec, const WorkBudge
   folder.write("impostors.glb", placed.glb);
   if (placed.shows_levels) folder.write("lods.glb", job.world.lods.file.glb);
   folder.write("metrics.json", metrics.dump(1));
+  for (std::size_t k = 0; k < verified.pictures.size(); ++k) folder.write(picture_file(k), encode_png(verified.pictures[k].side_by_side()));
   folder.write("report.html", make_report(metrics, placement, report_pictures(verified, placed.set)));
   folder.commit();
   outcome.aim_met = metrics["cpv"]["unsolved"] == 0;

@@ -44,11 +44,44 @@ struct CauseShares {
         pixels_ms += ms;
     }
   }
+  void add(const CauseShares& other) {
+    draws_ms += other.draws_ms;
+    triangles_ms += other.triangles_ms;
+    pixels_ms += other.pixels_ms;
+  }
   [[nodiscard]] double share(double ms) const {
     const double total_ms = draws_ms + triangles_ms + pixels_ms;
     return total_ms > 0.0 ? ms / total_ms : 0.0;
   }
+  [[nodiscard]] json to_json() const {
+    return {{"draws_share", share(draws_ms)}, {"triangles_share", share(triangles_ms)}, {"pixels_share", share(pixels_ms)}};
+  }
 };
+
+CauseShares shares_of(const World& world, const FeatureTable& table, const Subdivision& subdivision, const Cpv& cpv,
+                      const TimeModel& model) {
+  const Box& box = subdivision.cells[cpv.cell].box;
+  const Gaze gaze(enclosing_cone(subdivision.intervals[cpv.interval], world.camera), box, world.camera);
+  CauseShares shares;
+  for (const auto& term : subdivision.terms_of(cpv))
+    shares.add(table.bound(table.from_box(term.object, box), gaze), model, cpv.pixels_capped);
+  if (cpv.pixels_capped) shares.pixels_ms += model.most_pixel_ms(table.pixel_terms(), table.most_passed_pixels());
+  return shares;
+}
+
+// By cell: of its slowest region.
+std::map<std::uint32_t, json> cause_per_cell(const World& world, const Subdivision& subdivision, const TimeModel& model) {
+  constexpr std::size_t kNamedObjects = 3;
+  const FeatureTable table(world.scene, world.camera);
+  std::map<std::uint32_t, json> causes;
+  for (const auto p : slowest_cpv_per_cell(subdivision)) {
+    const Cpv& cpv = subdivision.cpvs[p];
+    const auto terms = subdivision.terms_of(cpv);
+    json& cause = causes[cpv.cell] = shares_of(world, table, subdivision, cpv, model).to_json();
+    cause["objects"] = objects_json(world, largest_terms({terms.begin(), terms.end()}, kNamedObjects));
+  }
+  return causes;
+}
 
 }  // namespace
 
@@ -69,7 +102,8 @@ json objects_json(const World& world, const std::vector<RegionTerm>& terms) {
   return list;
 }
 
-json heat_map_json(const Subdivision& subdivision, const Placement* placement, const TimeModel& model) {
+json heat_map_json(const World& world, const Subdivision& subdivision, const Placement* placement, const TimeModel& model) {
+  const auto causes = cause_per_cell(world, subdivision, model);
   const auto after_ms = placement != nullptr ? after_per_cell(subdivision, *placement) : std::vector<double>();
   json map = json::array();
   for (std::size_t c = 0; c < subdivision.cells.size(); ++c) {
@@ -83,6 +117,7 @@ json heat_map_json(const Subdivision& subdivision, const Placement* placement, c
                    {"z1", cell.box.max.z},
                    {"before_ms", before_ms},
                    {"after_ms", after}});
+    if (const auto cause = causes.find(static_cast<std::uint32_t>(c)); cause != causes.end()) map.back()["cause"] = cause->second;
   }
   return map;
 }
@@ -93,21 +128,14 @@ json causes_json(const World& world, const Subdivision& subdivision, const TimeM
   std::map<std::uint32_t, double> by_object;
   for (const auto p : slowest_cpv_per_cell(subdivision)) {
     const Cpv& cpv = subdivision.cpvs[p];
-    const Box& box = subdivision.cells[cpv.cell].box;
-    const DirectionCone cone = enclosing_cone(subdivision.intervals[cpv.interval], world.camera);
-    const Gaze gaze(cone, box, world.camera);
-    for (const auto& term : subdivision.terms_of(cpv)) {
-      shares.add(table.bound(table.from_box(term.object, box), gaze), model, cpv.pixels_capped);
-      by_object[term.object] += term.predicted_ms;
-    }
-    if (cpv.pixels_capped) shares.pixels_ms += model.most_pixel_ms(table.pixel_terms(), table.most_passed_pixels());
+    shares.add(shares_of(world, table, subdivision, cpv, model));
+    for (const auto& term : subdivision.terms_of(cpv)) by_object[term.object] += term.predicted_ms;
   }
   std::vector<RegionTerm> objects;
   for (const auto& [object, ms] : by_object) objects.push_back({object, ms});
-  return {{"draws_share", shares.share(shares.draws_ms)},
-          {"triangles_share", shares.share(shares.triangles_ms)},
-          {"pixels_share", shares.share(shares.pixels_ms)},
-          {"objects", objects_json(world, largest_terms(std::move(objects), 20))}};
+  json causes = shares.to_json();
+  causes["objects"] = objects_json(world, largest_terms(std::move(objects), 20));
+  return causes;
 }
 
 json slow_views_json(const std::vector<SlowView>& slow) {

@@ -17,8 +17,10 @@ namespace standin {
 /// Their views, from metrics.json's survey.worst_views.
 [[nodiscard]] std::vector<View> slow_views_from_json(const nlohmann::json& worst_views);
 
-/// Per cell in plan view: the highest bound of any direction, before and (where there is a placement) after.
-[[nodiscard]] nlohmann::json heat_map_json(const Subdivision& subdivision, const Placement* placement, const TimeModel& model);
+/// Per cell in plan view: the highest bound of any direction, before and (where there is a placement) after; and, of a cell with problem
+/// views, the cause of the slowest: shares of draws, triangles and pixels, and its three dearest objects.
+[[nodiscard]] nlohmann::json heat_map_json(const World& world, const Subdivision& subdivision, const Placement* placement,
+                                           const TimeModel& model);
 
 /// What makes the slowest region of each cell slow: predicted milliseconds by draws, triangles and pixels, and the objects that cost most,
 /// summed over these regions.

@@ -70,6 +70,20 @@ ViewPictures take_pictures(Renderer& renderer, std::uint32_t index, const View& 
   return pictures;
 }
 
+Texture ViewPictures::side_by_side() const {
+  Texture row{"", 3 * original.width, original.height, {}};
+  row.rgba.reserve(3 * original.rgba.size());
+  const std::size_t line = 4 * static_cast<std::size_t>(original.width);
+  for (std::size_t begin = 0; begin < original.rgba.size(); begin += line)
+    for (const Texture* pane : {&original, &with_impostors, &difference})
+      row.rgba.insert(row.rgba.end(), &pane->rgba[begin], &pane->rgba[begin] + line);
+  return row;
+}
+
+std::string picture_file(std::size_t k) {
+  return "worst_view_" + std::to_string(k + 1) + ".png";
+}
+
 std::vector<std::uint32_t> worst_views(const std::vector<VerifiedView>& views, std::uint32_t count) {
   const auto by_error = descending(views, [](const VerifiedView& view) { return view.mean_error; });
   const auto by_time = descending(views, after_ms);

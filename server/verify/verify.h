@@ -37,13 +37,19 @@ struct VerifiedView {
   double mean_flip = 0.0;   // likewise, as an eye sees it (image_error.h)
 };
 
-/// One view in pictures, for the report.
+/// One view in pictures.
 struct ViewPictures {
   std::uint32_t view = 0;  // index into VerifyResult::views
   Texture original;
   Texture with_impostors;
   Texture difference;  // absolute, amplified 4x
+
+  /// The three in a row, from left to right.
+  [[nodiscard]] Texture side_by_side() const;
 };
+
+/// Name of the picture of the k-th of VerifyResult::pictures in a result folder.
+[[nodiscard]] std::string picture_file(std::size_t k);
 
 struct VerifyOptions {
   std::uint32_t views = 32;

@@ -63,6 +63,9 @@ json frame_json(const VerifiedView& view) {
 json verify_json(const VerifyResult& result) {
   json frames = json::array();
   for (const auto& view : result.views) frames.push_back(frame_json(view));
+  json pictures = json::array();
+  for (std::size_t k = 0; k < result.pictures.size(); ++k)
+    pictures.push_back({{"file", picture_file(k)}, {"frame", result.pictures[k].view}});
   const bool was_measured = !measured(result, &VerifiedView::measured_after_ms).empty();
   return {{"views", result.views.size()},
           {"over_budget_estimated", result.over_budget_estimated},
@@ -73,6 +76,7 @@ json verify_json(const VerifyResult& result) {
           {"measured_coverage", optional_number(result.measured_coverage)},
           {"worst_before_over_surveyed", optional_number(result.worst_before_over_surveyed)},
           {"left_out", result.left_out},
+          {"pictures", std::move(pictures)},
           {"frames", std::move(frames)}};
 }
 

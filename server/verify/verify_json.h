@@ -7,7 +7,7 @@
 
 namespace standin {
 
-/// "verify": counts, percentiles before and after, and every frame.
+/// "verify": counts, percentiles before and after, every frame, and the files of those that are pictured (by index into the frames).
 [[nodiscard]] nlohmann::json verify_json(const VerifyResult& result);
 /// "image": what the pictures and the rays said.
 [[nodiscard]] nlohmann::json image_json(const VerifyResult& result);

@@ -38,6 +38,7 @@ test("survey says how low the budget may go, and place gets there", () => {
 
 test("the result's files are there, and no staged one", () => {
   assert.deepEqual(readdirSync(placed).filter((name) => !name.startsWith(".")).sort(),
-                   ["impostors.glb", ...(resultOf(placed).placement.lods ? ["lods.glb"] : []), "metrics.json", "placement.json", "report.html"]);
+                   ["impostors.glb", ...(resultOf(placed).placement.lods ? ["lods.glb"] : []), "metrics.json", "placement.json", "report.html", ...resultOf(placed).metrics.verify.pictures.map(({ file }) => file)]);
+  assert.ok(resultOf(placed).metrics.verify.pictures.length > 0);
   assert.deepEqual(readdirSync(fixture).sort(), ["city.glb", "placed", "survey"]);
 });

@@ -202,5 +202,18 @@ TEST(WorstViews, ByTurnsTheLargestErrorAndTheSlowest) {
   EXPECT_TRUE(worst_views({}, 4).empty());
 }
 
+TEST(ViewPictures, StandSideBySide) {
+  const auto column = [](std::uint8_t top, std::uint8_t bottom) {
+    return Texture{"", 1, 2, {top, top, top, 255, bottom, bottom, bottom, 255}};
+  };
+  const ViewPictures pictures{0, column(1, 2), column(3, 4), column(5, 6)};
+  const Texture row = pictures.side_by_side();
+  EXPECT_EQ(row.width, 3);
+  EXPECT_EQ(row.height, 2);
+  std::vector<int> reds;
+  for (std::size_t i = 0; i < row.rgba.size(); i += 4) reds.push_back(row.rgba[i]);
+  EXPECT_THAT(reds, testing::ElementsAre(1, 3, 5, 2, 4, 6));
+}
+
 }  // namespace
 }  // namespace standin
