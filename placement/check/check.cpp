@@ -43,8 +43,8 @@ class Checker {
     for (const auto& impostor : placement.impostors) impostor_costs_.push_back(impostor_cost_bound(impostor));
   }
 
-  [[nodiscard]] std::vector<Finding> check_impostors() const {
-    std::vector<Finding> findings;
+  [[nodiscard]] std::vector<CheckFinding> check_impostors() const {
+    std::vector<CheckFinding> findings;
     for (std::uint32_t id = 0; id < impostor_costs_.size(); ++id)
       if (!impostor_costs_[id])
         findings.push_back(
@@ -53,8 +53,8 @@ class Checker {
   }
 
   // The scene's levels are those that are shown (read_levels): they must lie no farther off than they say, and distances be the scene's.
-  [[nodiscard]] std::vector<Finding> check_levels(const WorkBudget& budget) const {
-    std::vector<Finding> findings;
+  [[nodiscard]] std::vector<CheckFinding> check_levels(const WorkBudget& budget) const {
+    std::vector<CheckFinding> findings;
     for (const LevelFault& fault : level_faults(input_.scene, input_.levels, budget))
       findings.push_back({Violation::kLevels, fault.object, fault.sentence});
     for (const PlacementLevels& stated : placement_.levels)
@@ -65,8 +65,8 @@ class Checker {
   }
 
   // All findings of one cell: its box, its CPVs, and the regions it should list but does not.
-  std::vector<Finding> check_cell(std::uint32_t cell_id, std::uint64_t& regions) const {
-    std::vector<Finding> findings;
+  std::vector<CheckFinding> check_cell(std::uint32_t cell_id, std::uint64_t& regions) const {
+    std::vector<CheckFinding> findings;
     const PlacementCell& cell = placement_.cells[cell_id];
     const Box box = cell_boxes_.cell_box(cell.key);
     if (!(box == cell.box))
@@ -88,7 +88,7 @@ class Checker {
     return cell.visible_set < 0 ? everything_ : placement_.visible_sets[static_cast<std::size_t>(cell.visible_set)];
   }
 
-  void check_cpv(std::uint32_t p, const PlacementCell& cell, CellCosts& costs, std::vector<Finding>& findings) const {
+  void check_cpv(std::uint32_t p, const PlacementCell& cell, CellCosts& costs, std::vector<CheckFinding>& findings) const {
     const PlacementCpv& cpv = placement_.cpvs[p];
     const std::string place = "cpv " + std::to_string(p);
     const auto report = [&](Violation violation, const std::string& what) { findings.push_back({violation, p, place + ": " + what}); };
@@ -156,8 +156,8 @@ class Checker {
   }
 
   // Depth first over the direction quadtree; a node within the budget vouches for all below it.
-  void check_unlisted(std::uint32_t cell_id, CellCosts& costs, const std::set<DirectionInterval>& listed, std::vector<Finding>& findings,
-                      std::uint64_t& regions) const {
+  void check_unlisted(std::uint32_t cell_id, CellCosts& costs, const std::set<DirectionInterval>& listed,
+                      std::vector<CheckFinding>& findings, std::uint64_t& regions) const {
     std::vector<DirectionInterval> pending;
     for (int face = 0; face < kFaceCount; ++face) pending.push_back({static_cast<Face>(face), 0, 0, 0});
     while (!pending.empty()) {
@@ -221,7 +221,7 @@ const char* violation_name(Violation violation) {
 
 CheckReport check_placement(const CheckInput& input, const Placement& placement, int threads, const WorkBudget& budget) {
   const Checker checker(input, placement);
-  std::vector<std::vector<Finding>> findings(placement.cells.size());
+  std::vector<std::vector<CheckFinding>> findings(placement.cells.size());
   std::vector<std::uint64_t> regions(placement.cells.size(), 0);
   parallel_for(placement.cells.size(), threads, budget,
                [&](std::size_t cell) { findings[cell] = checker.check_cell(static_cast<std::uint32_t>(cell), regions[cell]); });
@@ -238,7 +238,7 @@ CheckReport check_placement(const CheckInput& input, const Placement& placement,
   report.regions = std::accumulate(regions.begin(), regions.end(), std::uint64_t{0}) + report.cpvs;
   report.findings = checker.check_impostors();
   const auto start = std::chrono::steady_clock::now();
-  const std::vector<Finding> of_levels = checker.check_levels(budget);
+  const std::vector<CheckFinding> of_levels = checker.check_levels(budget);
   report.levels_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   report.findings.insert(report.findings.end(), of_levels.begin(), of_levels.end());
   for (auto& of_cell : findings) report.findings.insert(report.findings.end(), of_cell.begin(), of_cell.end());

@@ -30,7 +30,7 @@ enum class Violation {
 };
 [[nodiscard]] const char* violation_name(Violation violation);
 
-struct Finding {
+struct CheckFinding {
   Violation violation = Violation::kCellBox;
   std::uint32_t index = 0;  // CPV; cell for kCellBox and kMissingRegion; impostor for kLayerInViewCell; object for kLevels
   std::string sentence;     // values, place and the violated constraint
@@ -54,9 +54,9 @@ struct CheckReport {
   std::uint64_t regions = 0;  // leaf regions looked at
   std::uint64_t texture_bytes = 0;
   std::uint64_t geometry_bytes = 0;
-  double worst_bound_after_ms = 0.0;  // over all CPVs
-  double levels_s = 0.0;              // that bounding the errors of levels of detail took
-  std::vector<Finding> findings;      // by impostor, then cell and its CPVs; empty: the placement keeps its promises
+  double worst_bound_after_ms = 0.0;   // over all CPVs
+  double levels_s = 0.0;               // that bounding the errors of levels of detail took
+  std::vector<CheckFinding> findings;  // by impostor, then cell and its CPVs; empty: the placement keeps its promises
 };
 
 [[nodiscard]] CheckReport check_placement(const CheckInput& input, const Placement& placement, int threads, const WorkBudget& budget);

@@ -65,7 +65,10 @@ CalibrationSamples time_samples(const std::vector<TrainingScene>& scenes, const 
   const auto timer = make_frame_timer(*device, protocol);
   const double target_error = context.arguments.target_error;
   const auto enough = [&](const std::vector<TimedFrame>& frames) {
-    return target_error > 0.0 && enough_frames(frames) && accurate_enough(fit_time_model(frames, context.arguments.coverage), target_error);
+    if (!(target_error > 0.0) || !enough_frames(frames)) return false;
+    const FitSummary fit = fit_time_model(frames, context.arguments.coverage);
+    context.budget.found({{"median_error", fit.median_error}, {"frames", static_cast<double>(frames.size())}});
+    return accurate_enough(fit, target_error);
   };
   CalibrationSamples samples;
   samples.frames = sample_frames(scenes, *device, *timer, camera_of(spec), options_of(context), enough, context.budget);

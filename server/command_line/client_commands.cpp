@@ -13,6 +13,7 @@
 #include "server/command_line/commands.h"
 #include "server/error_table.h"
 #include "server/files/output_folder.h"
+#include "server/service/job_request.h"
 
 namespace standin {
 namespace {
@@ -50,19 +51,24 @@ json uploaded(const HttpClient& client, const fs::path& file, const WorkBudget& 
   return {{"upload", body_or_failure(client.post_file("/v1/uploads?name=" + HttpClient::escaped(name), file, budget)).at("id")}};
 }
 
-json arguments_of(const CommandArguments& arguments, const std::string& kind) {
-  const CommandArguments defaults;
+// As a body has them: numbers where the argument is one.
+json arguments_of(const ClientArguments& client) {
   json object = json::object();
-  if (kind == "calibrate" && arguments.seconds != defaults.seconds) object["seconds"] = arguments.seconds;
-  if (kind == "bake") object["view_cell"] = arguments.view_cell;
-  if (kind == "bake" && !arguments.objects.empty()) object["objects"] = arguments.objects;
+  for (const ArgumentField& field : argument_fields()) {
+    const auto given = client.arguments.find(field.key);
+    if (given == client.arguments.end()) continue;
+    json value = given->second;
+    if (field.schema.at("type") != "string") value = json::parse(given->second, nullptr, false);
+    if (value.is_discarded()) throw Failure(ErrorWord::kBadUsage, field.key + " = " + given->second + ": a number is expected");
+    object[field.key] = value;
+  }
   return object;
 }
 
 json request_of(const CommandContext& context, const HttpClient& http) {
   const CommandArguments& arguments = context.arguments;
   const ClientArguments& client = arguments.client;
-  json request = {{"kind", client.kind}, {"spec", changed_settings(context.spec)}, {"arguments", arguments_of(arguments, client.kind)}};
+  json request = {{"kind", client.kind}, {"spec", changed_settings(context.spec)}, {"arguments", arguments_of(client)}};
   if (!client.label.empty()) request["label"] = client.label;
   if (!client.job.empty()) request["job"] = client.job;
   if (!client.scene_name.empty()) request["scene"] = {{"name", client.scene_name}};
@@ -125,6 +131,8 @@ void print_job(const json& job, bool as_json) {
               job.at("state").get<std::string>().c_str());
   if (job.at("state") == "running")
     std::printf(" %s %.0f %%", job.at("stage").get<std::string>().c_str(), 100.0 * job.at("fraction").get<double>());
+  if (job.at("state") == "running" && job.at("best_so_far").is_object())
+    for (const auto& [name, value] : job["best_so_far"].items()) std::printf(", %s %s", name.c_str(), value.dump().c_str());
   if (job.at("aim_met") == false) std::printf(", its aim could not be met");
   std::printf("\n");
 }

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -29,6 +30,9 @@ struct ServiceArguments {
   double keep_days = 30.0;
   double upload_mb = 2000.0;
   double quota_gb = 50.0;
+  double owner_share = 0.5;
+  double scene_mtriangles = 100.0;
+  double scene_mtexels = 500.0;
   double cache_gb = 10.0;
   double worker_memory_gb = 8.0;
   double worker_cpu_hours = 24.0;
@@ -43,7 +47,8 @@ struct ClientArguments {
   std::string scene_name;  // of the server's folder
   std::string target_name;
   std::string label;
-  std::string job;  // its id
+  std::string job;                               // its id
+  std::map<std::string, std::string> arguments;  // that its kind takes (argument_fields()): text by key
   bool wait = false;
 };
 

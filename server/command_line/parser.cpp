@@ -5,6 +5,7 @@
 #include <map>
 
 #include "render/impostor/impostor.h"
+#include "server/service/job_request.h"
 
 namespace standin {
 namespace {
@@ -36,9 +37,11 @@ struct Builder {
   bool& print_config;
   bool& print_schema;
 
-  void spec_flags(const std::vector<std::string>& sections) {
+  using LeftOut = bool (*)(const std::string& key);
+  void spec_flags(
+      const std::vector<std::string>& sections, LeftOut left_out = [](const std::string&) { return false; }) {
     for (const auto& field : spec_fields()) {
-      if (field.flag.empty() || !in_sections(field.key, sections)) continue;
+      if (field.flag.empty() || !in_sections(field.key, sections) || left_out(field.key)) continue;
       const auto* row = &field;
       const auto apply = [given = &flags, row](const CLI::results_t& texts) {
         for (const auto& text : texts) given->emplace_back(row, text);
@@ -54,6 +57,15 @@ struct Builder {
     app.add_option("--config", config, "TOML file with settings; flags win over it");
     print_and_exit("--print-config", print_config, "print the complete effective settings as JSON and exit");
     print_and_exit("--print-schema", print_schema, "print the JSON Schema of a configuration and exit");
+  }
+  // What kinds of jobs take beside their settings; the service knows which takes what.
+  void argument_flags() {
+    for (const ArgumentField& field : argument_fields()) {
+      std::string flag = "--" + field.key;
+      std::ranges::replace(flag, '_', '-');
+      const auto apply = [given = &arguments().client.arguments, key = field.key](const std::string& text) { (*given)[key] = text; };
+      app.add_option_function<std::string>(flag, apply, std::string(kind_name(field.kind)) + ": " + field.help);
+    }
   }
   // "--flag" or "--flag=true", and "--flag=false" against a configuration file.
   void yes_or_no(const SpecField& field, const std::string& help) {
@@ -244,10 +256,15 @@ void add_service_commands(Grammar& grammar) {
   option("--attempts", service.attempts, "workers that may be lost before a job fails")->check(CLI::Range(1, 1000));
   option("--deadline-minutes", service.deadline_minutes, "that one attempt at a job may take; 0: as long as it takes")
       ->check(CLI::Range(0.0, 1e6));
-  option("--keep-days", service.keep_days, "from a job's end to its removal; 0: for ever")->check(CLI::Range(0.0, 1e5));
+  option("--keep-days", service.keep_days, "from a job's end to its removal, and of uploads that no job uses; 0: for ever")
+      ->check(CLI::Range(0.0, 1e5));
   option("--upload-mb", service.upload_mb, "that one upload may have")->check(CLI::Range(0.001, 1e6));
   option("--quota-gb", service.quota_gb, "that uploads and results may have together")->check(CLI::Range(0.001, 1e6));
+  option("--owner-share", service.owner_share, "of the queue, uploads, streams and quota that one owner of tokens may take")
+      ->check(CLI::Range(0.001, 1.0));
   option("--cache-gb", service.cache_gb, "that stage caches may have together")->check(CLI::Range(0.0, 1e6));
+  option("--scene-mtriangles", service.scene_mtriangles, "millions of triangles that a scene may draw")->check(CLI::Range(1e-6, 1e6));
+  option("--scene-mtexels", service.scene_mtexels, "millions of texels that a scene's textures may have")->check(CLI::Range(1e-6, 1e6));
   option("--worker-memory-gb", service.worker_memory_gb, "that a job may have; 0: no limit")->check(CLI::Range(0.0, 1e5));
   option("--worker-cpu-hours", service.worker_cpu_hours, "processor hours that a job may use; 0: no limit")->check(CLI::Range(0.0, 1e5));
   option("--streams", service.streams, "event streams that may be open")->check(CLI::Range(1, 100'000));
@@ -274,13 +291,10 @@ void add_client_commands(Grammar& grammar) {
   submit.app.add_option("--baseline", submit.arguments().baseline, "sweep: an earlier sweep.json");
   submit.app.add_option("--job", client.job, "verify: the id of the place job to look at");
   submit.app.add_option("--label", client.label, "a word for people");
-  submit.app.add_option("--seconds", submit.arguments().seconds, "calibrate: seconds of timed renders, at most")
-      ->check(CLI::Range(1.0, 3600.0));
-  submit.app.add_option("--objects", submit.arguments().objects, "bake: object ids, as 1,2,5-9");
-  submit.app.add_option("--view-cell", submit.arguments().view_cell, "bake: shaft:DX,DY,DZ,APEX_DEG,MIN_DISTANCE or box:X0,Y0,Z0,X1,Y1,Z1");
+  submit.argument_flags();
   submit.app.add_flag("--wait", client.wait, "wait for its end, showing how far it is; exit as the local command would");
   submit.output("result folder: waits, and fetches the result", false);
-  submit.spec_flags(kSubmitSections);
+  submit.spec_flags(kSubmitSections, is_services_own);
   submit.json();
   submit.run(submit_command);
 

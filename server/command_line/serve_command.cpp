@@ -23,8 +23,8 @@ fs::path this_program() {
   return fs::read_symlink("/proc/self/exe");
 }
 
-std::uint64_t bytes_of(double amount, double unit) {
-  return static_cast<std::uint64_t>(amount * unit);
+std::uint64_t amount_of(double count, double unit) {
+  return static_cast<std::uint64_t>(count * unit);
 }
 
 void listen_at(const std::string& text, ServiceConfig& config) {
@@ -39,7 +39,7 @@ void listen_at(const std::string& text, ServiceConfig& config) {
 }
 
 ServiceConfig config_of(const ServiceArguments& arguments) {
-  constexpr double kMb = 1e6, kGb = 1e9;
+  constexpr double kMillion = 1e6, kGb = 1e9;
   ServiceConfig config;
   listen_at(arguments.listen, config);
   config.data = arguments.data;
@@ -54,13 +54,16 @@ ServiceConfig config_of(const ServiceArguments& arguments) {
   config.scheduler.most_attempts = static_cast<int>(arguments.attempts);
   config.scheduler.deadline_s = 60.0 * arguments.deadline_minutes;
   config.scheduler.keep_s = 24.0 * 3600.0 * arguments.keep_days;
-  config.scheduler.most_cache_bytes = bytes_of(arguments.cache_gb, kGb);
-  config.scheduler.limits.data_bytes = bytes_of(arguments.worker_memory_gb, kGb);
-  config.scheduler.limits.cpu_s = bytes_of(arguments.worker_cpu_hours, 3600.0);
+  config.scheduler.most_cache_bytes = amount_of(arguments.cache_gb, kGb);
+  config.scheduler.most_triangles = amount_of(arguments.scene_mtriangles, kMillion);
+  config.scheduler.most_texels = amount_of(arguments.scene_mtexels, kMillion);
+  config.scheduler.limits.data_bytes = amount_of(arguments.worker_memory_gb, kGb);
+  config.scheduler.limits.cpu_s = amount_of(arguments.worker_cpu_hours, 3600.0);
   config.api.web = arguments.web.empty() ? this_program().parent_path() / "web" : fs::path(arguments.web);
-  config.api.most_upload_bytes = bytes_of(arguments.upload_mb, kMb);
-  config.api.quota_bytes = bytes_of(arguments.quota_gb, kGb);
+  config.api.most_upload_bytes = amount_of(arguments.upload_mb, kMillion);
+  config.api.quota_bytes = amount_of(arguments.quota_gb, kGb);
   config.api.most_streams = arguments.streams;
+  config.api.owner_share = arguments.owner_share;
   config.http.connections = arguments.connections;
   return config;
 }

@@ -114,7 +114,7 @@ HttpResponse problem_response(const Failure& failure) {
   response.headers = {{"Content-Type", "application/problem+json"}};
   if (failure.word() == ErrorWord::kQueueFull || failure.word() == ErrorWord::kBusy) response.headers.emplace_back("Retry-After", "30");
   if (failure.word() == ErrorWord::kUnauthorized) response.headers.emplace_back("WWW-Authenticate", "Bearer");
-  if (const auto* method = dynamic_cast<const MethodNotAllowed*>(&failure)) response.headers.emplace_back("Allow", method->allowed());
+  if (const auto* more = dynamic_cast<const FailureWithHeader*>(&failure)) response.headers.emplace_back(more->name(), more->value());
   return response;
 }
 
@@ -137,7 +137,8 @@ HttpResponse file_response(const HttpRequest& request, const std::filesystem::pa
   const auto range = condition.empty() || condition == etag ? parse_range(request.header("range"), bytes) : std::nullopt;
   if (!range) return response;
   if (range->begin >= range->end)
-    throw Failure(ErrorWord::kRangeUnsatisfiable, request.header("range") + " of " + std::to_string(bytes) + " bytes");
+    throw FailureWithHeader(ErrorWord::kRangeUnsatisfiable, request.header("range") + " of " + std::to_string(bytes) + " bytes",
+                            "Content-Range", "bytes */" + std::to_string(bytes));
   response.status = 206;
   response.body = FileBody{file, range->begin, range->end - range->begin};
   response.headers.emplace_back(

@@ -95,15 +95,17 @@ class InvalidBody : public Failure {
   std::vector<FieldProblem> problems_;
 };
 
-/// A route that knows other methods.
-class MethodNotAllowed : public Failure {
+/// One whose answer is to carry a header of its own: Allow, Content-Range.
+class FailureWithHeader : public Failure {
  public:
-  MethodNotAllowed(const std::string& sentence, std::string allowed)
-      : Failure(ErrorWord::kMethodNotAllowed, sentence), allowed_(std::move(allowed)) {}
-  [[nodiscard]] const std::string& allowed() const { return allowed_; }
+  FailureWithHeader(ErrorWord word, const std::string& sentence, std::string name, std::string value)
+      : Failure(word, sentence), name_(std::move(name)), value_(std::move(value)) {}
+  [[nodiscard]] const std::string& name() const { return name_; }
+  [[nodiscard]] const std::string& value() const { return value_; }
 
  private:
-  std::string allowed_;
+  std::string name_;
+  std::string value_;
 };
 
 /// RFC 9457 problem document of a word of the error table.

@@ -321,9 +321,4 @@ void HttpServer::tick() {
   }
 }
 
-unsigned HttpServer::open_streams() const {
-  const std::scoped_lock lock(loop_->mutex);
-  return static_cast<unsigned>(loop_->streams.size());
-}
-
 }  // namespace standin

@@ -32,7 +32,6 @@ struct HttpLimits {
   double head_s = 30.0;                // until a request's head must be there
   double least_bytes_per_s = 1000.0;   // of a body, on average, once it has been coming for as long
   std::size_t head_bytes = 32 * 1024;  // of a request's line and headers
-  unsigned streams = 200;              // that may be open at a time
   double heartbeat_s = 15.0;
 };
 
@@ -49,7 +48,6 @@ class HttpServer {
   void changed(const std::string& subject);
   /// To be called about once a second: streams that were silent for long say that they live.
   void tick();
-  [[nodiscard]] unsigned open_streams() const;
 
  private:
   struct Loop;

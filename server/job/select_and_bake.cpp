@@ -191,6 +191,7 @@ class Rounds {
     outcome.short_cpvs =
         count_short(subdivision_, result_.selection, baker_, world_, model_, budget_ms_, page_switches_ms(model_, result_.atlas_pages));
     result_.rounds.push_back(outcome);
+    tell_best();
     const bool settled = outcome.baked == 0 && outcome.short_cpvs == 0;
     const bool done = settled && (result_.selection.summary.unmet.empty() || boldness_ == kBoldCostShares.size());
     if (settled && !done) ++boldness_;
@@ -234,6 +235,13 @@ class Rounds {
   }
 
  private:
+  void tell_best() const {
+    const BakeRound& round = result_.rounds.back();
+    budget_.found({{"texture_bytes", round.real_bytes},
+                   {"impostors", static_cast<double>(result_.selection.chosen.size())},
+                   {"unsolved_cpvs", static_cast<double>(result_.selection.summary.unmet.size() + round.short_cpvs)}});
+  }
+
   [[nodiscard]] SelectionBudget limits() const { return {model_.predicted_budget_ms(budget_ms_), result_.page_switch_ms}; }
 
   void note_limits() {

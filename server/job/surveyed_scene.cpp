@@ -45,6 +45,7 @@ void add_reach(Surveyed& job, const JobSpec& spec, const Subdivision* problem, S
   }
   job.reach = clock.run("survey", [&] {
     const Subdivision whole = problem_views(job, std::numeric_limits<double>::infinity(), budget);
+    budget.found({{"worst_bound_ms", model.bound_ms(whole.worst_predicted_ms)}});
     return summarise_reach(job.world, model, whole, job.sizes, job.candidate_options, budget, job.searches.get());
   });
 }

@@ -1,6 +1,7 @@
 #include "server/service/api.h"
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 #include <sstream>
 
@@ -15,13 +16,8 @@ using nlohmann::json;
 // A body that goes straight to disk.
 class UploadBody : public BodySink {
  public:
-  UploadBody(BlobStore& blobs, std::uint64_t most_bytes, std::atomic<unsigned>& open)
-      : incoming_(blobs), most_bytes_(most_bytes), open_(open) {
-    ++open_;
-  }
-  ~UploadBody() override { --open_; }
-  UploadBody(const UploadBody&) = delete;
-  UploadBody& operator=(const UploadBody&) = delete;
+  UploadBody(BlobStore& blobs, std::uint64_t most_bytes, std::unique_ptr<OwnerTally::Hold> open)
+      : incoming_(blobs), most_bytes_(most_bytes), open_(std::move(open)) {}
   void write(std::string_view piece) override {
     if (piece.size() > most_bytes_ - incoming_.bytes())
       throw Failure(ErrorWord::kTooLarge, "the upload has more than " + std::to_string(most_bytes_) + " bytes");
@@ -32,7 +28,7 @@ class UploadBody : public BodySink {
  private:
   BlobStore::Incoming incoming_;
   std::uint64_t most_bytes_;
-  std::atomic<unsigned>& open_;
+  std::unique_ptr<OwnerTally::Hold> open_;
 };
 
 std::vector<std::string> parts_of(const std::string& path) {
@@ -93,6 +89,11 @@ json parsed(const std::string& text) {
   json body = json::parse(text, not_too_deep, false);
   if (body.is_discarded()) throw Failure(ErrorWord::kBadRequest, "the body is not JSON");
   return body;
+}
+
+// At least one.
+unsigned share_of(unsigned most, double share) {
+  return std::max(1U, static_cast<unsigned>(std::floor(share * most)));
 }
 
 std::string host_name(std::string host) {
@@ -159,7 +160,8 @@ Api::Match Api::match(const HttpRequest& request) {
     if (route.method == request.method || (route.method == "GET" && request.method == "HEAD")) return match;
     if (allowed.find(route.method) == std::string::npos) allowed += (allowed.empty() ? "" : ", ") + route.method;
   }
-  if (!allowed.empty()) throw MethodNotAllowed(request.method + " " + request.path + ": it takes " + allowed, allowed);
+  if (!allowed.empty())
+    throw FailureWithHeader(ErrorWord::kMethodNotAllowed, request.method + " " + request.path + ": it takes " + allowed, "Allow", allowed);
   throw Failure(ErrorWord::kNotFound, "no route " + request.path);
 }
 
@@ -176,8 +178,32 @@ void Api::require_own_host(const HttpRequest& request) const {
     throw Failure(ErrorWord::kForbidden, "a page of " + origin + " asks, not one of this server");
 }
 
-Failure Api::full() const {
-  return {ErrorWord::kDiskFull, "the service keeps " + std::to_string(config_.quota_bytes) + " bytes at most: delete jobs or uploads"};
+void Api::require_stream(const std::string& owner) const {
+  const unsigned share = share_of(config_.most_streams, config_.owner_share);
+  if (streams_.all() >= config_.most_streams)
+    throw Failure(ErrorWord::kBusy, std::to_string(streams_.all()) + " event streams are open, no more may be");
+  if (streams_.of(owner) >= share)
+    throw Failure(ErrorWord::kBusy, "you have " + std::to_string(share) + " event streams open, no more may be");
+}
+
+void Api::require_upload(const std::string& owner) const {
+  const unsigned share = share_of(config_.most_uploads, config_.owner_share);
+  if (uploads_.all() >= config_.most_uploads)
+    throw Failure(ErrorWord::kBusy, std::to_string(uploads_.all()) + " uploads are on their way, no more may be");
+  if (uploads_.of(owner) >= share)
+    throw Failure(ErrorWord::kBusy, "you have " + std::to_string(share) + " uploads on their way, no more may be");
+}
+
+void Api::require_room(const std::string& owner) {
+  if (hooks_.stored_bytes() >= config_.quota_bytes)
+    throw Failure(ErrorWord::kDiskFull,
+                  "the service keeps " + std::to_string(config_.quota_bytes) + " bytes at most: delete jobs or uploads");
+  if (config_.owner_share >= 1.0) return;
+  const auto share = static_cast<std::uint64_t>(config_.owner_share * static_cast<double>(config_.quota_bytes));
+  const std::uint64_t mine = jobs_.bytes_of(owner);
+  if (mine >= share)
+    throw Failure(ErrorWord::kDiskFull, "your jobs and uploads hold " + std::to_string(mine) + " bytes, no more than " +
+                                            std::to_string(share) + " may be: delete some");
 }
 
 std::unique_ptr<BodySink> Api::begin(HttpRequest& request) {
@@ -198,10 +224,9 @@ std::unique_ptr<BodySink> Api::begin(HttpRequest& request) {
     case Body::kUpload:
       require_type(request, kUploadTypes);
       require_length(request, config_.most_upload_bytes);
-      if (hooks_.stored_bytes() >= config_.quota_bytes) throw full();
-      if (uploads_ >= config_.most_uploads)
-        throw Failure(ErrorWord::kBusy, std::to_string(uploads_) + " uploads are on their way, no more may be");
-      return std::make_unique<UploadBody>(blobs_, config_.most_upload_bytes, uploads_);
+      require_room(request.owner);
+      require_upload(request.owner);
+      return std::make_unique<UploadBody>(blobs_, config_.most_upload_bytes, uploads_.hold(request.owner));
   }
   return nullptr;
 }

@@ -3,7 +3,6 @@
 // Transport only: a handler reads a request, asks the store, and writes an answer. None blocks, none runs a job.
 #pragma once
 
-#include <atomic>
 #include <filesystem>
 #include <functional>
 #include <map>
@@ -15,6 +14,7 @@
 #include "server/http/server.h"
 #include "server/service/catalogue.h"
 #include "server/service/job_request.h"
+#include "server/service/owner_tally.h"
 #include "server/service/tokens.h"
 #include "server/store/blob_store.h"
 #include "server/store/job_store.h"
@@ -30,6 +30,7 @@ struct ApiConfig {
   std::uint64_t quota_bytes = std::uint64_t{50} << 30;  // of all blobs
   unsigned most_streams = 200;
   unsigned most_uploads = 8;  // at a time
+  double owner_share = 1.0;   // of streams, uploads and quota that one owner may take, in (0,1]
 };
 
 /// What the API asks of the rest of the service.
@@ -38,7 +39,6 @@ struct ApiHooks {
   const Catalogue& targets;
   std::function<void()> queue_changed;
   std::function<double()> worker_cpu_s;
-  std::function<unsigned()> open_streams;
   std::function<std::uint64_t()> stored_bytes;  // of blobs and work folders, as of a moment ago
   std::function<void(const std::string&)> log;
 };
@@ -106,7 +106,9 @@ class Api : public HttpApplication {
   HttpResponse page(const Exchange& exchange);
 
   [[nodiscard]] HttpResponse accepted(const Job& job);
-  [[nodiscard]] Failure full() const;
+  void require_stream(const std::string& owner) const;
+  void require_upload(const std::string& owner) const;
+  void require_room(const std::string& owner);
   [[nodiscard]] Job job_of(const Exchange& exchange);
   [[nodiscard]] nlohmann::json document_of(const Job& job);
   [[nodiscard]] nlohmann::json dry_run(const JobRequest& request, const NewJob& job);
@@ -122,7 +124,7 @@ class Api : public HttpApplication {
   const ApiHooks hooks_;
   const nlohmann::json presets_;
   std::map<std::string, std::filesystem::path> page_files_;  // by URL path
-  std::atomic<unsigned> uploads_{0};
+  const OwnerTally streams_, uploads_;
   std::mutex counting_;
   std::map<int, std::uint64_t> answers_;  // by status
   double answer_s_ = 0.0;

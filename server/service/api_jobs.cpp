@@ -45,7 +45,8 @@ std::int64_t integer_of(const HttpRequest& request, const std::string& key, std:
 // Server-sent events of one job, from where the client left off to its end.
 class JobEvents : public TextStream {
  public:
-  JobEvents(JobStore& jobs, std::string id, std::int64_t after) : jobs_(jobs), id_(std::move(id)), after_(after) {}
+  JobEvents(JobStore& jobs, std::string id, std::int64_t after, std::unique_ptr<OwnerTally::Hold> open)
+      : jobs_(jobs), id_(std::move(id)), after_(after), open_(std::move(open)) {}
 
   std::optional<std::string> next() override {
     if (ended_) return std::nullopt;
@@ -74,6 +75,7 @@ class JobEvents : public TextStream {
   JobStore& jobs_;
   std::string id_;
   std::int64_t after_;
+  std::unique_ptr<OwnerTally::Hold> open_;
   bool ended_ = false;
 };
 
@@ -182,7 +184,7 @@ HttpResponse Api::submit(const Exchange& exchange) {
   if (const auto earlier = jobs_.earlier(owner, key, exchange.body)) return accepted(*earlier);
   const NewJob job{owner, std::string(kind_name(request.kind)), request.label, exchange.body, inputs_of(request, owner)};
   if (request.dry_run) return json_response(200, dry_run(request, job));
-  if (hooks_.stored_bytes() >= config_.quota_bytes) throw full();
+  require_room(owner);
   const Submission made = jobs_.submit(job, key);
   if (!made.replayed) hooks_.queue_changed();
   return accepted(made.job);
@@ -240,14 +242,13 @@ HttpResponse Api::cancel_job(const Exchange& exchange) {
 HttpResponse Api::job_events(const Exchange& exchange) {
   const Job job = job_of(exchange);
   if (exchange.request.method == "HEAD") return {200, {{"Content-Type", "text/event-stream"}}, std::string()};
-  if (hooks_.open_streams() >= config_.most_streams)
-    throw Failure(ErrorWord::kBusy, std::to_string(config_.most_streams) + " event streams are open, no more may be");
+  require_stream(exchange.request.owner);
   std::int64_t after = 0;
   const std::string last = exchange.request.header("last-event-id");
   std::from_chars(last.data(), last.data() + last.size(), after);
   return {200,
           {{"Content-Type", "text/event-stream"}, {"Cache-Control", "no-cache"}, {"X-Accel-Buffering", "no"}},
-          std::shared_ptr<TextStream>(std::make_shared<JobEvents>(jobs_, job.id, after))};
+          std::shared_ptr<TextStream>(std::make_shared<JobEvents>(jobs_, job.id, after, streams_.hold(exchange.request.owner)))};
 }
 
 HttpResponse Api::list_artifacts(const Exchange& exchange) {

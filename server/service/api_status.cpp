@@ -68,8 +68,8 @@ HttpResponse Api::metrics(const Exchange&) {
     text.sample("standin_http_answer_seconds_sum", answer_s_);
     text.sample("standin_http_answer_seconds_count", all);
   }
-  text.single("standin_event_streams", "gauge", "Open event streams.", hooks_.open_streams());
-  text.single("standin_uploads_under_way", "gauge", "Uploads under way.", uploads_.load());
+  text.single("standin_event_streams", "gauge", "Open event streams.", streams_.all());
+  text.single("standin_uploads_under_way", "gauge", "Uploads under way.", uploads_.all());
   text.single("standin_blob_bytes", "gauge", "Bytes of uploads, inputs and artifacts.", hooks_.stored_bytes());
   text.single("standin_server_cpu_seconds_total", "counter", "Processor seconds of the server itself.", own_cpu_s());
   text.single("standin_worker_cpu_seconds_total", "counter", "Processor seconds of workers that have ended.", hooks_.worker_cpu_s());

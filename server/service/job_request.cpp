@@ -17,8 +17,8 @@ using nlohmann::json;
 constexpr std::array<std::string_view, kJobKinds> kKindNames = {"survey", "place", "sweep", "calibrate", "verify", "bake"};
 constexpr std::size_t kMostLabelBytes = 200;
 
-// Settings that name files of the server, or share out its processors.
-const std::set<std::string> kServicesOwn = {"cache.folder", "cache.update", "scene.texture_folders", "threads", "device"};
+const std::set<std::string> kServicesOwn = {
+    "cache.folder", "cache.update", "scene.texture_folders", "scene.max_triangles", "scene.max_texels", "threads", "device"};
 
 struct Needs {
   bool scene, target, budget;
@@ -120,7 +120,7 @@ class Reader {
   void setting(JobSpec& spec, const SettingPlace& place, const json& value) {
     const std::string pointer = "/spec" + place.pointer.to_string();
     if (place.field == nullptr) return wrong(pointer, "is not a known setting");
-    if (kServicesOwn.contains(place.key)) return wrong(pointer, "is the service's own to set");
+    if (is_services_own(place.key)) return wrong(pointer, "is the service's own to set");
     if (place.key == "view_space.kind" && value.is_string() && value.get_ref<const std::string&>().starts_with("path:"))
       return wrong(pointer, "path:FILE names a file of the server: give boxes");
     attempt(pointer, [&] { set_field(spec, *place.field, value, place.key); });
@@ -186,6 +186,10 @@ std::string_view kind_name(JobKind kind) {
 const std::vector<ArgumentField>& argument_fields() {
   static const std::vector<ArgumentField> fields = make_argument_fields();
   return fields;
+}
+
+bool is_services_own(const std::string& key) {
+  return kServicesOwn.contains(key);
 }
 
 void apply_arguments(JobKind kind, const json& arguments, CommandArguments& to) {

@@ -47,6 +47,9 @@ struct ArgumentField {
 };
 [[nodiscard]] const std::vector<ArgumentField>& argument_fields();
 
+/// Whether a setting names files of the server, or shares out its processors: not a client's to set.
+[[nodiscard]] bool is_services_own(const std::string& key);
+
 /// Throws InvalidBody with a JSON pointer for each field that is unknown, missing, of the wrong type or out of its range.
 [[nodiscard]] JobRequest parse_job_request(const nlohmann::json& body);
 /// `arguments`: of a JobRequest.

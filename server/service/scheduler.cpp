@@ -77,6 +77,8 @@ class Scheduler::Attempt {
     for (const auto& [role, file] : scheduler_.jobs_.inputs_of(job_.id)) link_input(folder_, role, file, scheduler_.blobs_);
     const JobRequest request = parse_job_request(job_.request);
     WorkOrder order{request.kind, request.spec, request.arguments, scheduler_.config_.limits};
+    order.spec.max_triangles = scheduler_.config_.most_triangles;
+    order.spec.max_texels = scheduler_.config_.most_texels;
     if (request.kind == JobKind::kSurvey || request.kind == JobKind::kPlace || request.kind == JobKind::kSweep)
       order.spec.cache = scheduler_.cache_of(job_.owner).string();
     write_file(folder_ / kOrderFile, to_json(order).dump());
@@ -112,10 +114,12 @@ class Scheduler::Attempt {
   void report(const std::string& line) {
     const json progress = json::parse(line, nullptr, false);
     if (!progress.is_object() || !progress.contains("stage") || !progress.contains("fraction")) return;
-    if (progress["stage"] == stage_ && seconds_since(reported_) < kReportEach_s) return;
+    const json best = progress.value("best", json());
+    if (progress["stage"] == stage_ && best == best_ && seconds_since(reported_) < kReportEach_s) return;
     stage_ = progress["stage"];
+    best_ = best;
     reported_ = Clock::now();
-    scheduler_.jobs_.report(job_.id, stage_, progress["fraction"], nullptr);
+    scheduler_.jobs_.report(job_.id, stage_, progress["fraction"], best_);
   }
 
   void conclude() {
@@ -173,6 +177,7 @@ class Scheduler::Attempt {
   int signal_ = 0;
   std::optional<JobUse> used_;
   std::string stage_;
+  json best_;
   Clock::time_point reported_;
 };
 
@@ -255,8 +260,11 @@ void Scheduler::run(const Job& job) {
 }
 
 void Scheduler::tidy() {
-  if (config_.keep_s > 0.0)
-    for (const Job& job : jobs_.finished_before(now_ms() - static_cast<std::int64_t>(1e3 * config_.keep_s))) jobs_.remove("", job.id);
+  if (config_.keep_s > 0.0) {
+    const std::int64_t moment_ms = now_ms() - static_cast<std::int64_t>(1e3 * config_.keep_s);
+    for (const Job& job : jobs_.finished_before(moment_ms)) jobs_.remove("", job.id);
+    jobs_.remove_uploads_before(moment_ms);
+  }
   const std::scoped_lock lock(collecting_);
   blobs_.keep_only(blobs_in_use_(), kSpared);
   for (const auto& entry : fs::directory_iterator(config_.data / "work")) {

@@ -28,7 +28,9 @@ struct SchedulerConfig {
   int most_attempts = 5;
   double deadline_s = 0.0;  // wall seconds of one attempt; 0: none
   WorkerLimits limits;
-  double keep_s = 30.0 * 24 * 3600;  // after a job has ended; 0: for ever
+  std::uint64_t most_triangles = 100'000'000;  // of a scene
+  std::uint64_t most_texels = 500'000'000;
+  double keep_s = 30.0 * 24 * 3600;  // after a job has ended, or an upload came that no job uses; 0: for ever
   std::uint64_t most_cache_bytes = std::uint64_t{10} << 30;
 };
 

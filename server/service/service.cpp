@@ -4,8 +4,10 @@
 #include <sys/file.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <cmath>
 #include <thread>
 
 #include "render/base/error.h"
@@ -47,7 +49,7 @@ class Service {
       : config_(prepared(std::move(config))),
         lock_(config_.data),
         blobs_(config_.data / "blobs"),
-        jobs_(config_.data / "jobs.sqlite", config_.most_queued),
+        jobs_(config_.data / "jobs.sqlite", queue_limits(config_)),
         scenes_(config_.scenes, blobs_, config_.log),
         targets_(config_.targets, blobs_, config_.log),
         api_(config_.api, jobs_, blobs_, config_.tokens.empty() ? Tokens() : Tokens(config_.tokens), hooks()) {
@@ -75,6 +77,11 @@ class Service {
   }
 
  private:
+  static QueueLimits queue_limits(const ServiceConfig& config) {
+    const double share = std::floor(config.api.owner_share * static_cast<double>(config.most_queued));
+    return {config.most_queued, std::max<std::size_t>(1, static_cast<std::size_t>(share))};
+  }
+
   struct StopFirst {
     Scheduler& scheduler;
     ~StopFirst() { scheduler.stop(); }
@@ -100,6 +107,7 @@ class Service {
     config.scheduler.data = config.data;
     config.api.presets = config.presets;
     config.api.loopback_only = is_loopback(config.address) && config.tokens.empty();
+    if (config.tokens.empty()) config.api.owner_share = 1.0;  // there is one owner
     return config;
   }
 
@@ -112,10 +120,6 @@ class Service {
             [this] {
               Scheduler* one = scheduler_;
               return one == nullptr ? 0.0 : one->worker_cpu_s();
-            },
-            [this] {
-              HttpServer* one = server_;
-              return one == nullptr ? 0U : one->open_streams();
             },
             [this] { return stored_bytes_.load(); },
             config_.log};

@@ -30,7 +30,8 @@ void request_stop(int) {
   stop_requested.store(true);
 }
 
-// One line for each stage and each hundredth of it; and the worker waits here while another process measures times.
+// One line for each stage and each hundredth of it, and for each better result; and the worker waits here while another process measures
+// times.
 class ProgressLines {
  public:
   explicit ProgressLines(int descriptor) : descriptor_(descriptor) {}
@@ -41,17 +42,31 @@ class ProgressLines {
     if (stage == stage_ && fraction < fraction_ + kStep && fraction >= fraction_) return;
     stage_ = stage;
     fraction_ = fraction;
-    const std::string line = json{{"stage", stage}, {"fraction", fraction}}.dump() + "\n";
-    if (::write(descriptor_, line.data(), line.size()) < 0) stop_requested.store(true);  // nobody listens any more
+    write();
+  }
+
+  void found(std::initializer_list<Finding> best) {
+    const std::scoped_lock lock(mutex_);
+    for (const Finding& one : best) best_[std::string(one.name)] = one.value;
+    write();
   }
 
  private:
   static constexpr double kStep = 0.01;
+
+  void write() {
+    json line = {{"stage", stage_}, {"fraction", fraction_}};
+    if (!best_.is_null()) line["best"] = best_;
+    const std::string text = line.dump() + "\n";
+    if (::write(descriptor_, text.data(), text.size()) < 0) stop_requested.store(true);  // nobody listens any more
+  }
+
   const WorkBudget stop_{&stop_requested};
   int descriptor_;
   std::mutex mutex_;
   std::string stage_;
   double fraction_ = 0.0;
+  json best_;
 };
 
 int run_command(JobKind kind, const CommandContext& context) {
@@ -106,7 +121,9 @@ json outcome_of(const fs::path& folder, pid_t parent, int progress) {
     const WorkOrder order = work_order_from_json(json::parse(read_file(folder / kOrderFile)));
     confine_this_process(order.limits, parent);
     ProgressLines lines(progress);
-    const WorkBudget budget(&stop_requested, [&](std::string_view stage, double fraction) { lines(stage, fraction); });
+    const WorkBudget budget(
+        &stop_requested, [&](std::string_view stage, double fraction) { lines(stage, fraction); },
+        [&](std::initializer_list<Finding> best) { lines.found(best); });
     const int exit_code = run_command(order.kind, context_of(order, folder, budget));
     if (order.kind == JobKind::kVerify) {
       fs::create_directories(folder / "out");

@@ -108,8 +108,19 @@ std::string random_id() {
   return text;
 }
 
-JobStore::JobStore(const std::filesystem::path& file, std::size_t most_queued) : database_(file), most_queued_(most_queued) {
+JobStore::JobStore(const std::filesystem::path& file, QueueLimits limits) : database_(file), limits_(limits) {
   create_or_check(database_, file);
+}
+
+void JobStore::require_place_in_queue(const std::string& owner) {
+  Query queued = database_.query("SELECT count(*), coalesce(sum(owner = ?), 0) FROM job WHERE state = 'queued'", owner);
+  if (!queued.step()) return;
+  const auto all = static_cast<std::size_t>(queued.integer(0)), mine = static_cast<std::size_t>(queued.integer(1));
+  if (all >= limits_.all)
+    throw Failure(ErrorWord::kQueueFull, std::to_string(all) + " jobs wait already, no more than " + std::to_string(limits_.all) + " may");
+  if (mine >= limits_.of_one_owner)
+    throw Failure(ErrorWord::kQueueFull,
+                  std::to_string(mine) + " of your jobs wait already, no more than " + std::to_string(limits_.of_one_owner) + " may");
 }
 
 Submission JobStore::submit(const NewJob& job, const std::string& key) {
@@ -119,12 +130,7 @@ Submission JobStore::submit(const NewJob& job, const std::string& key) {
   const std::scoped_lock lock(mutex_);
   Transaction transaction(database_);
   if (const auto known = earlier_locked(job.owner, key, digest)) return {*known, true};
-  {
-    Query queued = database_.query("SELECT count(*) FROM job WHERE state = 'queued'");
-    if (queued.step() && static_cast<std::size_t>(queued.integer(0)) >= most_queued_)
-      throw Failure(ErrorWord::kQueueFull,
-                    std::to_string(queued.integer(0)) + " jobs wait already, no more than " + std::to_string(most_queued_) + " may");
-  }
+  require_place_in_queue(job.owner);
   database_.run("INSERT INTO job (id, owner, kind, label, request, state, created_ms) VALUES (?, ?, ?, ?, ?, 'queued', ?)", id, job.owner,
                 job.kind, job.label, request, now_ms());
   write_files(id, "input", job.inputs);
@@ -253,8 +259,8 @@ std::optional<Job> JobStore::start_next() {
     id = row.text(0);
   }
   database_.run(
-      "UPDATE job SET state = 'running', attempts = attempts + 1, stage = '', fraction = 0, started_ms = coalesce(started_ms, ?) WHERE id "
-      "= ?",
+      "UPDATE job SET state = 'running', attempts = attempts + 1, stage = '', fraction = 0, best_so_far = 'null', started_ms = "
+      "coalesce(started_ms, ?) WHERE id = ?",
       now_ms(), id);
   const Job job = find_locked("", id).value();
   add_event(job);
@@ -408,6 +414,20 @@ bool JobStore::remove_upload(const std::string& owner, const std::string& id) {
   const std::scoped_lock lock(mutex_);
   database_.run("DELETE FROM upload WHERE id = ? AND owner = ?", id, owner);
   return database_.changes() > 0;
+}
+
+void JobStore::remove_uploads_before(std::int64_t moment_ms) {
+  const std::scoped_lock lock(mutex_);
+  database_.run("DELETE FROM upload WHERE created_ms < ? AND sha256 NOT IN (SELECT sha256 FROM job_file)", moment_ms);
+}
+
+std::uint64_t JobStore::bytes_of(const std::string& owner) {
+  const std::scoped_lock lock(mutex_);
+  Query row = database_.query(
+      "SELECT coalesce(sum(bytes), 0) FROM (SELECT sha256, bytes FROM upload WHERE owner = ? UNION "
+      "SELECT job_file.sha256, job_file.bytes FROM job_file JOIN job ON job.id = job_file.job WHERE job.owner = ?)",
+      owner, owner);
+  return row.step() ? static_cast<std::uint64_t>(row.integer(0)) : 0;
 }
 
 std::vector<std::string> JobStore::blobs_in_use() {

@@ -35,9 +35,15 @@ struct Submission {
   bool replayed = false;  // the same key came with the same body before
 };
 
+/// Jobs that may wait.
+struct QueueLimits {
+  std::size_t all = 100;
+  std::size_t of_one_owner = 100;
+};
+
 class JobStore {
  public:
-  explicit JobStore(const std::filesystem::path& file, std::size_t most_queued = 100);
+  explicit JobStore(const std::filesystem::path& file, QueueLimits limits = {});
 
   /// `key`: of Idempotency-Key, or empty. Throws Failure(kKeyReused) where it came with another body, Failure(kQueueFull).
   Submission submit(const NewJob& job, const std::string& key);
@@ -69,6 +75,10 @@ class JobStore {
   [[nodiscard]] std::optional<Upload> find_upload(const std::string& owner, const std::string& id);
   [[nodiscard]] std::vector<Upload> uploads_of(const std::string& owner);
   bool remove_upload(const std::string& owner, const std::string& id);
+  /// Those that came before that moment, and whose file no job refers to.
+  void remove_uploads_before(std::int64_t moment_ms);
+  /// Of an owner's uploads and of the files of the owner's jobs; the same bytes count once.
+  [[nodiscard]] std::uint64_t bytes_of(const std::string& owner);
   /// SHA-256 of all that anything refers to.
   [[nodiscard]] std::vector<std::string> blobs_in_use();
   /// By the owner's latest jobs of the kind: medians, in proportion to the bytes of their scenes.
@@ -85,12 +95,13 @@ class JobStore {
   std::optional<Job> find_locked(const std::string& owner, const std::string& id);
   void add_event(const Job& job);
   void changed(const std::string& id) const;
+  void require_place_in_queue(const std::string& owner);
   void write_files(const std::string& id, const char* purpose, const std::map<std::string, StoredFile>& files);
   void end_locked(const std::string& id, const JobEnd& end);
 
   std::mutex mutex_;
   Database database_;
-  std::size_t most_queued_;
+  QueueLimits limits_;
   std::function<void(const std::string&)> listener_;
 };
 

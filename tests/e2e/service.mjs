@@ -113,6 +113,10 @@ test("events tell of a job from where a client left off to its end", async () =>
   assert.equal(events[0].data.state, "queued");
   assert.equal(events.at(-1).data.state, "succeeded");
   assert.ok(events.some(({ data }) => data.stage === "survey"));
+  const best = events.map(({ data }) => data.best_so_far).filter((found) => found);
+  const { metrics } = { metrics: JSON.parse(await bytesOf(url, body.id, "metrics.json")) };
+  assert.equal(best.at(-1).unsolved_cpvs, metrics.cpv.unsolved);
+  assert.ok(best.every(({ texture_bytes, impostors }) => texture_bytes > 0 && impostors > 0), JSON.stringify(best));
   const later = parse(await (await fetch(`${url}/v1/jobs/${body.id}/events`, { headers: { "Last-Event-ID": `${events[2].id}` } })).text());
   assert.deepEqual(later, events.slice(3));
 });
@@ -219,7 +223,8 @@ test("artifacts come in ranges, and not at all where they are known", async () =
   const range = await fetch(url + href, { headers: { Range: "bytes=10-19" } });
   assert.deepEqual([range.status, range.headers.get("content-range")], [206, `bytes 10-19/${bytes}`]);
   assert.deepEqual(Buffer.from(await range.arrayBuffer()), readFileSync(join(local, "placement.json")).subarray(10, 20));
-  assert.equal((await fetch(url + href, { headers: { Range: `bytes=${bytes}-` } })).status, 416);
+  const beyond = await fetch(url + href, { headers: { Range: `bytes=${bytes}-` } });
+  assert.deepEqual([beyond.status, beyond.headers.get("content-range")], [416, `bytes */${bytes}`]);
   assert.equal((await fetch(url + href, { headers: { "If-None-Match": `"${sum}"` } })).status, 304);
   assert.equal((await fetch(url + href, { method: "HEAD" })).headers.get("content-length"), `${bytes}`);
 });
@@ -257,6 +262,36 @@ test("a job that uses up its processor time says so, at its first attempt", asyn
   assert.deepEqual([job.state, job.error.word, job.attempts], ["failed", "worker_lost", 1]);
   assert.match(job.error.detail, /processor time/);
   await stop(short);
+});
+
+test("a scene above the server's limits ends its job with the limit's name", async () => {
+  const strict = await serve("strict", "--scene-mtriangles", "0.001");
+  const job = await untilEnded(strict.url, (await post(`${strict.url}/v1/jobs`, { ...place, kind: "survey" })).body.id);
+  assert.deepEqual([job.state, job.error.word, job.attempts], ["failed", "too_large", 1]);
+  assert.match(job.error.detail, /more than the 1000 allowed/);
+  await stop(strict);
+});
+
+test("with tokens, nobody takes it all", async () => {
+  const tokens = join(folder, "two_tokens");
+  writeFileSync(tokens, `anna ${sha256("a-token")}\nbert ${sha256("b-token")}\n`);
+  const shared = await serve("taken", "--tokens", tokens, "--owner-share", "0.5", "--streams", "2", "--queue", "2");
+  const as = (token) => ({ Authorization: `Bearer ${token}` });
+  const body = { ...place, spec: { ...spec, visibility: { mode: "on", rays: 100_000_000, missed_share: 1e-6 } } };
+  const submit = async (token) => (await post(`${shared.url}/v1/jobs`, body, as(token))).body;
+  const running = await submit("a-token");
+  for (let i = 0; i < 100 && (await get(`${shared.url}/v1/jobs/${running.id}`, as("a-token"))).body.state === "queued"; ++i) await new Promise((done) => setTimeout(done, 20));
+  assert.equal((await submit("a-token")).state, "queued");
+  assert.equal((await submit("a-token")).word, "queue_full", "one of two places is anna's share");
+  const berts = await submit("b-token");
+  assert.equal(berts.state, "queued");
+  const watch = (id, token, signal) => fetch(`${shared.url}/v1/jobs/${id}/events`, { headers: as(token), signal });
+  const closing = new AbortController();
+  assert.equal((await watch(running.id, "a-token", closing.signal)).status, 200);
+  assert.equal((await (await watch(running.id, "a-token")).json()).word, "busy");
+  assert.equal((await watch(berts.id, "b-token", closing.signal)).status, 200);
+  closing.abort();
+  await stop(shared);
 });
 
 test("with tokens, nobody sees what is another's", async () => {

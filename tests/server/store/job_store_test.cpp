@@ -26,7 +26,7 @@ class JobStoreTest : public test::TempFolder {
     }
     return ErrorWord::kInternal;
   }
-  JobStore store_{root_ / "jobs.sqlite", 3};
+  JobStore store_{root_ / "jobs.sqlite", {.all = 3, .of_one_owner = 3}};
 };
 
 TEST_F(JobStoreTest, JobsAreDoneInTheOrderInWhichTheyCame) {
@@ -40,8 +40,11 @@ TEST_F(JobStoreTest, WhatGoesBackIsNextAgainAndCountsItsAttempts) {
   const std::string first = store_.submit(job(), "").job.id;
   (void)store_.submit(job(), "");
   EXPECT_EQ(store_.start_next()->attempts, 1);
+  store_.report(first, "bake", 0.5, {{"impostors", 3.0}});
   store_.requeue(first, true);
-  EXPECT_EQ(store_.start_next()->id, first);
+  const auto second = store_.start_next();
+  EXPECT_EQ(second->id, first);
+  EXPECT_TRUE(second->best_so_far.is_null()) << "what a lost worker had is lost";
   store_.requeue(first, false);
   const auto again = store_.start_next();
   EXPECT_EQ(again->id, first);
@@ -74,6 +77,43 @@ TEST_F(JobStoreTest, TheQueueIsBounded) {
   EXPECT_FALSE(store_.submit(job(), "late").replayed) << "a refused job leaves no key behind";
 }
 
+TEST_F(JobStoreTest, OneOwnerDoesNotFillTheQueueForAll) {
+  JobStore store(root_ / "shared.sqlite", {.all = 3, .of_one_owner = 2});
+  for (int i = 0; i < 2; ++i) (void)store.submit(job("anna"), "");
+  EXPECT_EQ(word_of([&] { (void)store.submit(job("anna"), ""); }), ErrorWord::kQueueFull);
+  (void)store.submit(job("bert"), "");
+  (void)store.start_next();  // of anna's
+  EXPECT_FALSE(store.submit(job("anna"), "").replayed);
+  EXPECT_EQ(word_of([&] { (void)store.submit(job("bert"), ""); }), ErrorWord::kQueueFull) << "three wait in all";
+}
+
+TEST_F(JobStoreTest, AnOwnersBytesCountOnceWhereverTheyAreUsed) {
+  const StoredFile city{"city.glb", 3, std::string(64, 'a')};  // what job() reads
+  (void)store_.add_upload("anna", city);
+  (void)store_.add_upload("anna", {"again.glb", 3, city.sha256});
+  (void)store_.add_upload("anna", {"other.glb", 40, std::string(64, 'b')});
+  (void)store_.add_upload("bert", {"large.glb", 500, std::string(64, 'c')});
+  const std::string id = store_.submit(job("anna"), "").job.id;
+  (void)store_.start_next();
+  store_.finish(id, {.state = JobState::kSucceeded, .aim_met = true, .problem = {}, .artifacts = {{"x", 7000, std::string(64, 'd')}}});
+  EXPECT_EQ(store_.bytes_of("anna"), 7043U);
+  EXPECT_EQ(store_.bytes_of("carl"), 0U);
+}
+
+TEST_F(JobStoreTest, OldUploadsGoUnlessAJobUsesThem) {
+  const Upload used = store_.add_upload("anna", {"city.glb", 3, std::string(64, 'a')});
+  const Upload unused = store_.add_upload("anna", {"other.glb", 3, std::string(64, 'b')});
+  const std::string id = store_.submit(job("anna"), "").job.id;
+  store_.remove_uploads_before(unused.created_ms);
+  EXPECT_TRUE(store_.find_upload("anna", unused.id)) << "it came at that moment, not before";
+  store_.remove_uploads_before(now_ms() + 1);
+  EXPECT_TRUE(store_.find_upload("anna", used.id));
+  EXPECT_FALSE(store_.find_upload("anna", unused.id));
+  (void)store_.remove("anna", id);
+  store_.remove_uploads_before(now_ms() + 1);
+  EXPECT_FALSE(store_.find_upload("anna", used.id));
+}
+
 TEST_F(JobStoreTest, NobodySeesWhatIsAnothers) {
   const std::string id = store_.submit(job(), "").job.id;
   EXPECT_FALSE(store_.find("bert", id).has_value());
@@ -96,7 +136,7 @@ TEST_F(JobStoreTest, AQueuedJobIsCancelledAtOnceARunningOneIsAsked) {
 }
 
 TEST_F(JobStoreTest, PagesHoldEachJobOnce) {
-  JobStore store(root_ / "many.sqlite", 100);
+  JobStore store(root_ / "many.sqlite");
   std::vector<std::string> ids;
   for (int i = 0; i < 7; ++i) ids.insert(ids.begin(), store.submit(job(), "").job.id);
   std::vector<std::string> seen;
@@ -113,7 +153,8 @@ TEST_F(JobStoreTest, PagesHoldEachJobOnce) {
 TEST_F(JobStoreTest, EventsTellEveryStateInOrder) {
   const std::string id = store_.submit(job(), "").job.id;
   (void)store_.start_next();
-  store_.report(id, "survey", 0.5, nullptr);
+  store_.report(id, "survey", 0.5, {{"worst_bound_ms", 30.5}});
+  EXPECT_EQ(store_.find("anna", id)->best_so_far["worst_bound_ms"], 30.5);
   store_.finish(id,
                 {.state = JobState::kSucceeded, .aim_met = true, .problem = {}, .artifacts = {{"metrics.json", 2, std::string(64, 'c')}}});
   store_.report(id, "late", 0.1, nullptr);  // of a worker that is gone
@@ -121,6 +162,8 @@ TEST_F(JobStoreTest, EventsTellEveryStateInOrder) {
   ASSERT_EQ(events.size(), 4U);
   EXPECT_EQ(events[0].data["state"], "queued");
   EXPECT_EQ(events[2].data["stage"], "survey");
+  EXPECT_FALSE(events[1].data.contains("best_so_far"));
+  EXPECT_EQ(events[2].data["best_so_far"]["worst_bound_ms"], 30.5);
   EXPECT_EQ(events[3].data["aim_met"], true);
   EXPECT_EQ(store_.events_of(id, events[1].id).size(), 2U);
   EXPECT_EQ(store_.artifacts_of(id).at(0).name, "metrics.json");
