@@ -34,13 +34,30 @@ void make_monotone(CostOfUnits& costs) {
   for (std::size_t u = kUnits; u > 0; --u) costs[u - 1] = std::min(costs[u - 1], costs[u]);
 }
 
+// More units than these cost more: all that matters of a monotone table, and few of its entries.
+class Steps {
+ public:
+  explicit Steps(const CostOfUnits& costs) {
+    for (std::size_t u = 0; u <= kUnits; ++u)
+      if (costs[u] != kNever && (u == kUnits || costs[u + 1] != costs[u])) steps_[count_++] = u;
+  }
+  [[nodiscard]] const std::size_t* begin() const { return steps_.data(); }
+  [[nodiscard]] const std::size_t* end() const { return steps_.data() + count_; }
+
+ private:
+  std::array<std::size_t, kUnits + 1> steps_;
+  std::size_t count_ = 0;
+};
+
 CostOfUnits together(const CostOfUnits& a, const CostOfUnits& b) {
   CostOfUnits sum;
   sum.fill(kNever);
-  for (std::size_t i = 0; i <= kUnits; ++i) {
-    if (a[i] == kNever || (i < kUnits && a[i + 1] == a[i])) continue;
-    for (std::size_t j = 0; j <= kUnits; ++j) sum[std::min(kUnits, i + j)] = std::min(sum[std::min(kUnits, i + j)], a[i] + b[j]);
-  }
+  const Steps steps_of_a(a), steps_of_b(b);
+  for (const std::size_t i : steps_of_a)
+    for (const std::size_t j : steps_of_b) {
+      double& cost = sum[std::min(kUnits, i + j)];
+      cost = std::min(cost, a[i] + b[j]);
+    }
   make_monotone(sum);
   return sum;
 }
