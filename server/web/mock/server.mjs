@@ -1,5 +1,5 @@
-// A stand-in for the service, to work on the page and to test it without one: a finished job from a result folder, and made-up ones that
-// wait, run, failed and were cancelled. Answers in the API's form and checks nothing but what the page is to show as refused.
+// A stand-in for the service, to work on the page and to test it without one: a finished job from a result folder, and made-up ones
+// (jobs.mjs). Answers in the API's form and checks nothing but what the page is to show as refused.
 //
 //     node mock/server.mjs --result FOLDER --scene SCENE.glb [--port 8081] [--page dist] [--survey FOLDER]
 import { createHash, randomUUID } from "node:crypto";
@@ -9,6 +9,9 @@ import { basename, dirname, extname, join, normalize } from "node:path";
 import { fileURLToPath } from "node:url";
 import { parseArgs } from "node:util";
 
+import { madeUpJobs } from "./jobs.mjs";
+import { problem } from "./problem.mjs";
+
 const here = dirname(fileURLToPath(import.meta.url));
 const TYPES = {
   ".html": "text/html; charset=utf-8",
@@ -17,113 +20,23 @@ const TYPES = {
   ".json": "application/json",
   ".glb": "model/gltf-binary",
   ".wasm": "application/wasm",
+  ".png": "image/png",
 };
 const STAGES = ["load", "visibility", "view_space", "survey", "candidates", "select", "bake", "verify"];
+const BEST = {
+  survey: { worst_bound_ms: 210.5 },
+  select: { worst_bound_ms: 210.5, texture_bytes: 912_345, impostors: 41, unsolved_cpvs: 0 },
+};
 const POLICY =
   "default-src 'self'; img-src 'self' blob: data:; connect-src 'self' blob:; style-src 'self'; script-src 'self' 'wasm-unsafe-eval'";
-
-const problem = (status, title, detail, more = {}) => ({ status, body: { type: "about:blank", title, status, detail, ...more } });
 
 class Mock {
   constructor({ page, result, scene, survey }) {
     this.page = page;
     this.uploads = new Map();
     this.jobs = [];
-    const now = Date.now(),
-      at = (minutes) => new Date(now + 60_000 * minutes).toISOString();
-    const request = (kind) => ({ kind, scene: { name: basename(scene) }, target: { name: "reference.json" }, spec: { budget_ms: 30 } });
-    const base = {
-      scene,
-      label: "",
-      aim_met: null,
-      best_so_far: null,
-      error: null,
-      attempts: 1,
-      started: null,
-      finished: null,
-      stage: null,
-      fraction: null,
-      folder: null,
-    };
-    this.add({
-      ...base,
-      id: "done",
-      kind: "place",
-      label: "the city at night",
-      state: "succeeded",
-      aim_met: true,
-      created: at(-30),
-      started: at(-29),
-      finished: at(-24),
-      folder: result,
-      request: request("place"),
-    });
-    if (survey)
-      this.add({
-        ...base,
-        id: "survey",
-        kind: "survey",
-        label: "",
-        state: "succeeded",
-        created: at(-50),
-        started: at(-49),
-        finished: at(-47),
-        folder: survey,
-        request: request("survey"),
-      });
-    this.add({
-      ...base,
-      id: "short",
-      kind: "place",
-      label: "budget too low",
-      state: "succeeded",
-      aim_met: false,
-      created: at(-20),
-      started: at(-19),
-      finished: at(-11),
-      folder: result,
-      request: request("place"),
-    });
-    this.add({
-      ...base,
-      id: "failed",
-      kind: "place",
-      label: "broken scene",
-      state: "failed",
-      created: at(-10),
-      started: at(-9),
-      finished: at(-9),
-      request: request("place"),
-      error: problem(422, "The scene file is broken", "scene.glb: accessor 4 reaches 12 bytes beyond its buffer", {
-        word: "file-broken",
-        errors: [{ pointer: "/scene", detail: "accessor 4 reaches 12 bytes beyond its buffer" }],
-      }).body,
-    });
-    this.add({
-      ...base,
-      id: "cancelled",
-      kind: "sweep",
-      label: "",
-      state: "cancelled",
-      created: at(-8),
-      started: at(-8),
-      finished: at(-7),
-      request: request("sweep"),
-    });
-    this.add({
-      ...base,
-      id: "running",
-      kind: "place",
-      label: "south quarter",
-      state: "running",
-      created: at(-4),
-      started: at(-3),
-      stage: "select",
-      fraction: 0.4,
-      best_so_far: { texture_bytes: 812_345, unsolved: 12 },
-      request: request("place"),
-    });
-    this.add({ ...base, id: "queued", kind: "survey", label: "", state: "queued", created: at(-1), request: request("survey") });
+    this.result = result;
+    for (const job of madeUpJobs({ result, scene, survey })) this.add(job);
   }
 
   add(job) {
@@ -131,24 +44,20 @@ class Mock {
   }
 
   document(job) {
-    const { scene, folder, ...rest } = job;
+    const { scene, folder: _, files: __, ...rest } = job;
     const path = `/v1/jobs/${job.id}`;
-    const artifacts =
-      folder === null
-        ? []
-        : readdirSync(folder)
-            .filter((name) => !name.startsWith("."))
-            .map((name) => {
-              const file = join(folder, name);
-              return {
-                path: name,
-                bytes: statSync(file).size,
-                sha256: createHash("sha256").update(readFileSync(file)).digest("hex"),
-                type: TYPES[extname(name)] ?? "application/octet-stream",
-                href: `${path}/artifacts/${name}`,
-              };
-            });
-    return { ...rest, scene: { name: basename(scene), bytes: statSync(scene).size, href: `${path}/scene` }, artifacts };
+    const artifacts = [...filesOf(job)].map(([name, read]) => {
+      const content = read();
+      return {
+        path: name,
+        bytes: content.length,
+        sha256: createHash("sha256").update(content).digest("hex"),
+        type: TYPES[extname(name)] ?? "application/octet-stream",
+        href: `${path}/artifacts/${name}`,
+      };
+    });
+    const file = scene && { name: basename(scene), bytes: statSync(scene).size, href: `${path}/scene` };
+    return { ...rest, scene: file, artifacts };
   }
 
   submit(request) {
@@ -162,9 +71,8 @@ class Mock {
         status: 200,
         body: { valid: true, kind: request.kind, spec: request.spec, predicted: { seconds: 140, peak_rss_bytes: 1.2e9 } },
       };
-    const done = this.jobs.find((job) => job.id === "done");
     const job = {
-      ...done,
+      ...this.jobs.find((known) => known.id === "done"),
       id: randomUUID().slice(0, 8),
       kind: request.kind,
       label: request.label ?? "",
@@ -177,7 +85,7 @@ class Mock {
       request,
     };
     this.add(job);
-    this.run(job, done.folder);
+    this.run(job, this.result);
     return { status: 202, body: this.document(job) };
   }
 
@@ -190,10 +98,19 @@ class Mock {
         started: job.started ?? new Date().toISOString(),
         stage: STAGES[step],
         fraction: (step + 1) / (STAGES.length + 1),
+        best_so_far: BEST[STAGES[step]] ?? job.best_so_far,
       });
       if (++step < STAGES.length) return;
       clearInterval(timer);
-      Object.assign(job, { state: "succeeded", aim_met: true, finished: new Date().toISOString(), stage: null, fraction: 1, folder });
+      Object.assign(job, {
+        state: "succeeded",
+        aim_met: true,
+        finished: new Date().toISOString(),
+        stage: null,
+        fraction: 1,
+        best_so_far: null,
+        folder,
+      });
     }, 120);
   }
 
@@ -207,7 +124,7 @@ class Mock {
     let id = 0,
       last = "";
     const send = () => {
-      const data = JSON.stringify({ state: job.state, stage: job.stage, fraction: job.fraction });
+      const data = JSON.stringify({ state: job.state, stage: job.stage, fraction: job.fraction, best_so_far: job.best_so_far });
       if (data !== last) response.write(`id: ${++id}\nevent: progress\ndata: ${data}\n\n`);
       last = data;
       if (job.state !== "queued" && job.state !== "running") {
@@ -225,7 +142,8 @@ class Mock {
     const jobs = this.jobs.filter(
       (job) => (!query.get("state") || job.state === query.get("state")) && (!query.get("kind") || job.kind === query.get("kind")),
     );
-    return { status: 200, body: { jobs: jobs.map((job) => this.document(job)), next: null } };
+    const documents = jobs.map((job) => ({ ...this.document(job), request: undefined })); // a list leaves requests out
+    return { status: 200, body: { jobs: documents, next: null } };
   }
 
   async upload(request, name) {
@@ -271,12 +189,18 @@ class Mock {
     if (part === "cancel") return this.cancel(job);
     if (part === "events") return this.events(job, response);
     if (part === "scene") return file(response, job.scene);
-    if (part === "artifacts") return file(response, join(job.folder, basename(rest.join("/"))));
+    if (part === "artifacts") return this.artifact(job, response, rest.join("/"));
     if (request.method === "DELETE") {
       this.jobs = this.jobs.filter((other) => other !== job);
       return (response.writeHead(204).end(), null);
     }
     return { status: 200, body: this.document(job) };
+  }
+
+  artifact(job, response, path) {
+    const read = filesOf(job).get(path);
+    if (read === undefined) return problem(404, "There is no such artifact", `job ${job.id} has no artifact ${path}`);
+    return bytes(response, path, read());
   }
 
   async serve(request, response) {
@@ -287,6 +211,14 @@ class Mock {
     response.writeHead(answer.status, { "Content-Type": answer.status < 400 ? "application/json" : "application/problem+json" });
     response.end(JSON.stringify(answer.body));
   }
+}
+
+/// Name to what reads it: of the job's folder, and the made-up ones in their place.
+function filesOf({ folder, files = {} }) {
+  const names = folder === null ? [] : readdirSync(folder).filter((name) => !name.startsWith("."));
+  const found = new Map(names.map((name) => [name, () => readFileSync(join(folder, name))]));
+  for (const [name, content] of Object.entries(files)) found.set(name, () => content);
+  return found;
 }
 
 async function text(request) {
@@ -301,6 +233,12 @@ function file(response, path) {
   return null;
 }
 
+function bytes(response, name, content) {
+  response.writeHead(200, { "Content-Type": TYPES[extname(name)] ?? "application/octet-stream", "Content-Length": content.length });
+  response.end(content);
+  return null;
+}
+
 function page(response, folder, path) {
   const wanted = join(folder, normalize(path));
   const found = extname(path) !== "" && existsSync(wanted) ? wanted : join(folder, "index.html");
@@ -308,7 +246,7 @@ function page(response, folder, path) {
   file(response, found);
 }
 
-/// Resolves to {url, close}.
+/// Resolves to {url, close, update}; `update` changes members of a job.
 export function startMock(options) {
   const mock = new Mock(options);
   const server = createServer((request, response) =>
@@ -319,7 +257,15 @@ export function startMock(options) {
   );
   return new Promise((resolve) =>
     server.listen(options.port ?? 0, "127.0.0.1", () =>
-      resolve({ url: `http://127.0.0.1:${server.address().port}`, close: () => (server.closeAllConnections(), server.close()) }),
+      resolve({
+        url: `http://127.0.0.1:${server.address().port}`,
+        close: () => (server.closeAllConnections(), server.close()),
+        update: (id, members) =>
+          Object.assign(
+            mock.jobs.find((job) => job.id === id),
+            members,
+          ),
+      }),
     ),
   );
 }
