@@ -56,6 +56,7 @@ export interface Progress {
   readonly state?: JobState;
   readonly stage?: string | null;
   readonly fraction?: number | null;
+  readonly best_so_far?: Job["best_so_far"];
 }
 export interface Upload {
   readonly id: string;

@@ -13,6 +13,20 @@ export const KIND_TEXT: Record<JobKind, string> = {
   bake: "bake: one impostor, with its image metrics",
 };
 
+const KIND_NOUN: Record<JobKind, string> = {
+  place: "Placement",
+  survey: "Survey",
+  sweep: "Sweep",
+  calibrate: "Calibration",
+  verify: "Verification",
+  bake: "Bake",
+};
+
+/// "Survey of city.glb".
+export const whatItIs = ({ kind, scene }: Job) => [KIND_NOUN[kind], scene?.name].filter(Boolean).join(" of ");
+/// What a job is called: by its label, or by what it does to which scene.
+export const jobTitle = (job: Job) => job.label || whatItIs(job);
+
 const STAGE_TEXT: Record<string, string> = {
   load: "loading the scene",
   visibility: "finding what each cell may see",
@@ -25,6 +39,13 @@ const STAGE_TEXT: Record<string, string> = {
   verify: "checking the result",
   lods: "simplifying objects",
   curves: "measuring error against time",
+  assemble: "writing the placement",
+  calibrate: "timing frames",
+  "verify: pictures": "checking the result: pictures",
+  "verify: timing": "checking the result: frame times",
+  "verify: rays": "checking the result: rays",
+  "quality: rays": "judging the image: rays",
+  "quality: pictures": "judging the image: pictures",
 };
 export const stageText = (stage: string | null) => (stage === null ? "" : (STAGE_TEXT[stage] ?? stage));
 
@@ -39,7 +60,7 @@ export function stateElement(job: Job): HTMLElement {
 
 export function progressElement(job: Job): HTMLElement | null {
   if (job.state !== "running") return null;
-  const label = `Progress of ${job.label || job.id}`;
+  const label = `Progress of ${jobTitle(job)}`;
   return job.fraction === null
     ? element("progress", { "aria-label": label })
     : element("progress", { max: 1, value: job.fraction, "aria-label": label });

@@ -26,15 +26,35 @@ export function bytes(value: unknown): string {
   return `${significant(scaled, 3)} ${units[unit]}`;
 }
 
+const UNITS = [
+  ["day", 86400],
+  ["h", 3600],
+  ["min", 60],
+  ["s", 1],
+] as const;
+
+/// In the two largest units that it has: "2 min 20 s".
 export function duration(seconds: number): string {
-  if (seconds < 60) return `${Math.round(seconds)} s`;
-  if (seconds < 3600) return `${Math.floor(seconds / 60)} min ${Math.round(seconds % 60)} s`;
-  return `${Math.floor(seconds / 3600)} h ${Math.round((seconds % 3600) / 60)} min`;
+  let rest = Math.round(seconds);
+  const parts = UNITS.map(([unit, length]): [string, number] => {
+    const whole = Math.floor(rest / length);
+    rest -= whole * length;
+    return [unit === "day" && whole > 1 ? "days" : unit, whole];
+  });
+  const first = parts.findIndex(([, whole]) => whole > 0);
+  if (first < 0) return "0 s";
+  return parts
+    .slice(first, first + 2)
+    .filter(([, whole]) => whole > 0)
+    .map(([unit, whole]) => `${whole} ${unit}`)
+    .join(" ");
 }
 
-/// "12 s ago" of an ISO time.
+/// "3 min ago" of an ISO time, in the largest unit alone.
 export function ago(time: string, now = Date.now()): string {
-  return `${duration(Math.max(0, (now - Date.parse(time)) / 1000))} ago`;
+  const seconds = Math.max(0, (now - Date.parse(time)) / 1000);
+  const [, length] = UNITS.find(([, unit]) => seconds >= unit) ?? ["s", 1];
+  return `${duration(Math.floor(seconds / length) * length)} ago`;
 }
 
 /// Items of a list, the rest counted: "tree_1, tree_2 and 5 more".

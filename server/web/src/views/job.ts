@@ -2,11 +2,12 @@
 
 import { cancelJob, deleteJob, getJob, isFinal, isWalkable, watchJob, type Artifact, type Job, type Progress } from "../api";
 import { artifactLink } from "../artifact_link";
+import { bestSoFar } from "../best_so_far";
 import { button, element, folded, replaceIfChanged, section, table } from "../elements";
-import { KIND_TEXT, progressElement, stageText, stateElement, stateWord, tookText } from "../job_text";
+import { jobTitle, KIND_TEXT, progressElement, stageText, stateElement, stateWord, tookText, whatItIs } from "../job_text";
 import { failureBox, problemBox } from "../problem";
 import { jobAddress, type Route } from "../router";
-import { bytes, percent, significant } from "../text";
+import { bytes, percent } from "../text";
 
 const CONTENT: Record<string, string> = {
   "placement.json": "what to draw for any view: the runtime contract",
@@ -17,7 +18,10 @@ const CONTENT: Record<string, string> = {
   "sweep.json": "memory against the budget",
   "verify.json": "what was measured",
   "target.json": "the machine's time model",
+  "result.json": "what the command printed: the main numbers",
 };
+const WORST_VIEW = /^worst_view_\d+\.png$/;
+const contentOf = (path: string) => CONTENT[path] ?? (WORST_VIEW.test(path) ? "a worst view: original, with impostors, difference" : "");
 
 function stateText(job: Job): string {
   switch (job.state) {
@@ -38,19 +42,7 @@ function stateText(job: Job): string {
   }
 }
 
-function best(job: Job): HTMLElement | null {
-  if (job.best_so_far === null || isFinal(job.state)) return null;
-  const text = (key: string, value: unknown) =>
-    key.endsWith("_bytes") ? bytes(value) : typeof value === "number" ? significant(value, 4) : JSON.stringify(value);
-  return element(
-    "dl",
-    { class: "facts" },
-    ...Object.entries(job.best_so_far).flatMap(([key, value]) => [
-      element("dt", {}, `best so far: ${key.replaceAll("_", " ")}`),
-      element("dd", {}, text(key, value)),
-    ]),
-  );
-}
+const inHand = (job: Job) => (job.best_so_far === null || isFinal(job.state) ? null : bestSoFar(job.best_so_far));
 
 function artifacts(job: Job): HTMLElement {
   if (job.artifacts.length === 0)
@@ -60,8 +52,8 @@ function artifacts(job: Job): HTMLElement {
       isFinal(job.state) ? "This job left no files." : "Files appear when the job has finished, all at once.",
     );
   const columns = [
-    { title: "file", cell: (file: Artifact) => artifactLink(file, file.path, { save: true }) },
-    { title: "holds", cell: (file: Artifact) => CONTENT[file.path] ?? "" },
+    { title: "file", cell: (file: Artifact) => artifactLink(file, file.path, { save: true, class: "file-name" }) },
+    { title: "holds", cell: (file: Artifact) => contentOf(file.path) },
     { title: "size", number: true, cell: (file: Artifact) => bytes(file.bytes) },
     { title: "SHA-256", cell: (file: Artifact) => element("code", { title: file.sha256 }, file.sha256.slice(0, 16)) },
   ];
@@ -107,8 +99,8 @@ class JobPage {
     private readonly signal: AbortSignal,
   ) {
     host.append(
-      element("h1", {}, job.label || `Job ${job.id}`),
-      element("p", { class: "context" }, `${job.kind} of ${job.scene?.name ?? "no scene"} \u00b7 id ${job.id}`),
+      element("h1", {}, jobTitle(job)),
+      element("p", { class: "context" }, [job.label && whatItIs(job), `id ${job.id}`].filter(Boolean).join(" \u00b7 ")),
       this.failure,
       this.state,
       this.rest,
@@ -118,12 +110,12 @@ class JobPage {
 
   private show(): void {
     const { job } = this;
-    document.title = `${stateWord(job)}: ${job.label || job.id} \u2014 Standin`;
+    document.title = `${stateWord(job)}: ${jobTitle(job)} \u2014 Standin`;
     replaceIfChanged(
       this.state,
       element("p", { role: "status" }, stateElement(job)),
       element("p", {}, stateText(job)),
-      ...[progressElement(job), best(job)].filter((node) => node !== null),
+      ...[progressElement(job), inHand(job)].filter((node) => node !== null),
     );
     const key = `${job.state} ${job.cancel_asked} ${job.started} ${job.artifacts.length}`;
     if (key === this.restShown) return; // what is unfolded or focused there stays so
@@ -172,13 +164,14 @@ class JobPage {
     this.show();
   }
 
-  private apply({ state, stage, fraction }: Progress): void {
+  private apply({ state, stage, fraction, best_so_far }: Progress): void {
     if (state !== undefined && isFinal(state)) return; // files and outcome come with the document
     this.job = {
       ...this.job,
       ...(state && { state }),
       ...(stage !== undefined && { stage }),
       ...(fraction !== undefined && { fraction }),
+      ...(best_so_far !== undefined && { best_so_far }),
       started: this.job.started ?? (state === "running" ? new Date().toISOString() : null),
     };
     this.show();

@@ -2,7 +2,7 @@
 
 import { isWalkable, JOB_KINDS, listJobs, type Job } from "../api";
 import { button, element, replaceIfChanged, table, type Column } from "../elements";
-import { progressElement, stageText, stateElement, tookText } from "../job_text";
+import { jobTitle, progressElement, stageText, stateElement, tookText } from "../job_text";
 import { failureBox } from "../problem";
 import { jobAddress, type Route } from "../router";
 import { ago, percent } from "../text";
@@ -11,7 +11,7 @@ const REFRESH_MS = 2000;
 
 function actions(job: Job): HTMLElement {
   const link = (view: "result" | "walk", text: string) =>
-    element("a", { href: jobAddress(job.id, view), "aria-label": `${text} of ${job.label || job.id}` }, text);
+    element("a", { href: jobAddress(job.id, view), "aria-label": `${text} of ${jobTitle(job)}` }, text);
   if (job.state !== "succeeded" || job.artifacts.length === 0) return element("span");
   return element("span", {}, link("result", "Result"), isWalkable(job) && " \u00b7 ", isWalkable(job) && link("walk", "Walk"));
 }
@@ -23,7 +23,7 @@ function progressCell(job: Job): HTMLElement {
 
 // Of a narrow window only the first are seen without scrolling.
 const COLUMNS: readonly Column<Job>[] = [
-  { title: "Job", cell: (job) => element("a", { href: jobAddress(job.id) }, job.label || job.id) },
+  { title: "Job", cell: (job) => element("a", { href: jobAddress(job.id) }, jobTitle(job)) },
   { title: "State", cell: stateElement },
   { title: "Look at", cell: actions },
   { title: "Progress or time taken", cell: progressCell },
@@ -66,7 +66,7 @@ function choice(id: string, label: string, values: readonly string[], current: s
 class JobList {
   private readonly kind;
   private readonly state;
-  private readonly list = element("div");
+  private readonly list = element("div", { class: "jobs" });
   private readonly more = element("div", { class: "actions" });
   private older: Job[] = []; // pages after the first, as they were when asked for
   private next: string | null = null;

@@ -3,7 +3,7 @@
 import { artifactOf, getJob, getText, isFinal, isWalkable, type Job } from "../api";
 import { artifactLink } from "../artifact_link";
 import { element, folded, section } from "../elements";
-import { stateWord } from "../job_text";
+import { jobTitle, stateWord } from "../job_text";
 import { problemBox } from "../problem";
 import { heatMap } from "../result/heat_map";
 import type { Metrics, Sweep } from "../result/metrics";
@@ -87,7 +87,7 @@ export async function showResult(host: HTMLElement, { id }: Route, signal: Abort
   const status = element("p", { role: "status" }, "Loading the result");
   host.append(status);
   const job = await getJob(id, signal);
-  const name = job.label || job.scene?.name || job.id;
+  const name = jobTitle(job);
   document.title = `Result: ${name} \u2014 Standin`;
   const [metrics, sweep, placement] = await Promise.all([
     artifact(job, "metrics.json", parsed<Metrics>, signal),

@@ -18,7 +18,7 @@ import {
   type Problem,
 } from "../api";
 import { button, element, folded } from "../elements";
-import { KIND_TEXT } from "../job_text";
+import { jobTitle, KIND_TEXT } from "../job_text";
 import { failureBox } from "../problem";
 import { jobAddress, type Route } from "../router";
 import { bytes, duration, isNumber } from "../text";
@@ -45,7 +45,11 @@ async function loadChoices(): Promise<Choices> {
   const isTarget = (name: string) => name.toLowerCase().endsWith(".json");
   const calibrated = jobs.jobs
     .filter((job) => job.kind === "calibrate")
-    .map((job) => ({ value: `job:${job.id}`, text: `calibrated by job ${job.label || job.id}`, reference: { job: job.id } }));
+    .map((job) => ({
+      value: `job:${job.id}`,
+      text: `${jobTitle(job)}, made ${new Date(job.created).toLocaleString()}`,
+      reference: { job: job.id },
+    }));
   return {
     schema,
     presets,
@@ -130,7 +134,9 @@ class SubmitForm {
       "select",
       { id: "placement" },
       element("option", { value: "" }, choices.placements.length === 0 ? "no finished placement" : "choose\u2026"),
-      ...choices.placements.map((job) => element("option", { value: job.id }, `${job.label || job.id}: ${job.scene?.name ?? ""}`)),
+      ...choices.placements.map((job) =>
+        element("option", { value: job.id }, `${jobTitle(job)}, made ${new Date(job.created).toLocaleString()}`),
+      ),
     );
     this.preset = element(
       "select",
@@ -168,7 +174,7 @@ class SubmitForm {
     const kinds = JOB_KINDS.map((kind) => {
       const radio = element("input", { type: "radio", name: "kind", id: `kind-${kind}`, value: kind, checked: kind === "place" });
       radio.addEventListener("change", () => this.choose(kind));
-      return element("label", { for: `kind-${kind}` }, radio, ` ${KIND_TEXT[kind]}`);
+      return element("label", { for: `kind-${kind}` }, radio, KIND_TEXT[kind]);
     });
     const goal = element(
       "fieldset",

@@ -3,6 +3,7 @@
 import { artifactOf, getJob, getText, isFinal, type Job } from "../api";
 import { artifactLink } from "../artifact_link";
 import { button, element } from "../elements";
+import { jobTitle } from "../job_text";
 import { jobAddress, parseTriple, walkAddress, type Route } from "../router";
 import { PlacementContent, type ViewContent } from "../runtime/content";
 import { PlacementLookup, type Lookup } from "../runtime/lookup";
@@ -292,7 +293,7 @@ export async function showWalk(host: HTMLElement, route: Route, signal: AbortSig
       element("a", { href: jobAddress(job.id, "result") }, "Result"),
       " \u00b7 ",
       element("a", { href: jobAddress(job.id) }, "Job"),
-      ` ${job.label || job.id}`,
+      `: ${jobTitle(job)}`,
     ),
   );
   if (job.kind !== "place" || !isFinal(job.state) || artifactOf(job, "placement.json") === undefined) {
