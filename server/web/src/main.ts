@@ -4,12 +4,12 @@ import "../../report/page/style.css";
 import "uplot/dist/uPlot.min.css";
 import "./page.css";
 
+import { ProblemError } from "./api";
 import { element } from "./elements";
 import { failureBox } from "./problem";
 import { parseRoute, type Route } from "./router";
 import { showJob } from "./views/job";
 import { showJobs } from "./views/jobs";
-import { showResult } from "./views/result";
 import { showSubmit } from "./views/submit";
 
 /// Fills `host`; `signal` aborts when the view goes.
@@ -22,8 +22,16 @@ const showUnknown: View = async (host) => {
     element("p", {}, "This address names no view of the page. ", element("a", { href: "#/" }, "To the jobs")),
   );
 };
-// three.js is half of the page's bytes and only the walk needs it.
-const showWalk: View = async (host, route, signal) => (await import("./views/walk")).showWalk(host, route, signal);
+const notLoaded = (): never => {
+  throw new ProblemError({
+    title: "This part of the page cannot be loaded",
+    status: 0,
+    detail: "The server was updated or cannot be reached; reload the page.",
+  });
+};
+// Charts and three.js are most of the page's bytes, and the first views need neither.
+const showResult: View = async (...view) => (await import("./views/result").catch(notLoaded)).showResult(...view);
+const showWalk: View = async (...view) => (await import("./views/walk").catch(notLoaded)).showWalk(...view);
 const VIEWS: Record<Route["view"], View> = {
   jobs: showJobs,
   new: showSubmit,

@@ -5,8 +5,10 @@ import { test } from "node:test";
 import * as THREE from "three";
 
 import { splitEvents } from "../src/api";
+import { bestEntries } from "../src/best_so_far";
+import { causeText } from "../src/result/cause";
 import { parseRoute, parseTriple, walkAddress } from "../src/router";
-import { listed, significant } from "../src/text";
+import { ago, duration, listed, significant } from "../src/text";
 import { splitIntoPieces } from "../src/walk/pieces";
 
 test("addresses name views, and what is none of them says so", () => {
@@ -52,6 +54,46 @@ test("numbers keep their digits, and lists their length", () => {
     ["1,235", "1.23e-4", "0", "\u2013"],
   );
   assert.equal(listed(["a", "b", "c"], 2), "a, b and 1 more");
+});
+
+test("times are told in their two largest units, ages in one", () => {
+  assert.deepEqual([0, 59.4, 60, 140, 3600, 7384, 90000, 172800].map(duration), [
+    "0 s",
+    "59 s",
+    "1 min",
+    "2 min 20 s",
+    "1 h",
+    "2 h 3 min",
+    "1 day 1 h",
+    "2 days",
+  ]);
+  const now = Date.parse("2026-01-02T00:00:00Z");
+  assert.deepEqual(
+    [0.2, 59, 119, 7199, 200000].map((seconds) => ago(new Date(now - 1000 * seconds).toISOString(), now)),
+    ["0 s ago", "59 s ago", "1 min ago", "1 h ago", "2 days ago"],
+  );
+});
+
+test("a cause names the work that counts, and the heaviest objects", () => {
+  const shares = { draws_share: 0.05, triangles_share: 0.3, pixels_share: 0.65 };
+  const objects = [
+    { object: 3, name: "tree_03", ms: 12.34 },
+    { object: 17, name: "", ms: 1 },
+  ];
+  assert.equal(causeText({ ...shares, objects }), "65 % pixels, 30 % triangles; most by tree_03 (12.3 ms), object 17 (1 ms)");
+  assert.equal(causeText({ ...shares, objects: [] }), "65 % pixels, 30 % triangles");
+  assert.deepEqual([causeText(null), causeText(undefined)], ["", ""]);
+});
+
+test("what a job has in hand is told in words and units, and what is not known as it is named", () => {
+  assert.deepEqual(bestEntries({ other_ms: 3, unsolved_cpvs: 12, impostors: 37, texture_bytes: 812345, left_to_do: "much" }), [
+    ["textures", "812 kB"],
+    ["impostors", "37"],
+    ["slow regions not solved", "12"],
+    ["left to do", '"much"'],
+    ["other", "3 ms"],
+  ]);
+  assert.deepEqual(bestEntries({ median_error: 0.0512 }), [["median error of the time model", "5.12 %"]]);
 });
 
 /// `count` triangles in a row along x, 1 m apart, in a shuffled order.

@@ -1,6 +1,13 @@
-// metrics.json and sweep.json as far as the result view reads them; everything may be missing.
+// metrics.json and sweep.json as far as the result views read them; everything may be missing.
 
 export type Triple = [number, number, number];
+/// What the bound of a slowest region is made of.
+export interface Cause {
+  draws_share: number;
+  triangles_share: number;
+  pixels_share: number;
+  objects: { object: number; name: string; ms: number }[]; // heaviest first, a few
+}
 export interface HeatCell {
   x0: number;
   z0: number;
@@ -8,6 +15,7 @@ export interface HeatCell {
   z1: number;
   before_ms: number;
   after_ms?: number | null;
+  cause?: Cause | null;
 }
 export interface ViewTime {
   position: Triple;
@@ -23,7 +31,13 @@ export interface VerifiedFrame {
   after_ms: number | null;
   estimated_before_ms: number | null;
   estimated_after_ms: number | null;
+  mean_error: number | null;
   mean_flip: number | null;
+}
+/// The file holds a verified frame without and with impostors and the difference of the two, side by side.
+export interface FramePicture {
+  file: string;
+  frame: number; // index into the frames
 }
 export interface Unsolved {
   cpv: number;
@@ -38,7 +52,7 @@ export interface Metrics {
   mode?: string;
   budget_ms?: number;
   scene?: { objects: number; triangles: number };
-  target?: { id: string };
+  target?: { id: string; coverage?: number };
   cpv?: { count: number; solved?: number; unsolved?: number };
   impostors?: { count: number };
   memory?: { texture_bytes?: number; geometry_bytes?: number; lods_bytes?: number; atlas_padding_bytes?: number; total_bytes?: number };
@@ -54,7 +68,10 @@ export interface Metrics {
     views: number;
     over_budget_measured: number | null;
     over_budget_estimated: number | null;
+    worst_over_budget?: number | null;
+    measured_coverage?: number | null;
     frames?: VerifiedFrame[];
+    pictures?: FramePicture[];
     left_out?: string[];
   };
   causes?: {
@@ -76,7 +93,7 @@ export interface SweepPoint {
   impostors: number;
   cpv: { count: number; unsolved: number };
 }
-export interface Sweep {
+export interface Sweep extends Pick<Metrics, "scene" | "target"> {
   points: SweepPoint[];
   budgets_from: string;
   passed: boolean;

@@ -1,69 +1,61 @@
 // The parts of a result: from a job's numbers to elements, or nothing where the job has no such numbers.
 
-import type { Artifact } from "../api";
-import { artifactLink } from "../artifact_link";
 import { lineChart, type Series } from "../charts";
 import { element, section, table } from "../elements";
-import { walkAddress } from "../router";
 import type { Placement } from "../runtime/placement";
 import { bytes, count, isNumber, milliseconds, percent, significant } from "../text";
-import type { Metrics, Sweep, SweepPoint, Triple, Unsolved, VerifiedFrame } from "./metrics";
+import type { Metrics, Unsolved } from "./metrics";
+import { tileList, verdictBox, type Tile } from "./summary";
 
 export function verdict(metrics: Metrics): HTMLElement {
-  const box = (tone: string, word: string, sentence: string) =>
-    element("div", { class: `verdict ${tone}` }, element("strong", {}, word), element("span", {}, sentence));
   const { cpv, survey, verify } = metrics,
     budget = milliseconds(metrics.budget_ms);
   if (!isNumber(metrics.budget_ms) || metrics.budget_ms === 0 || !isNumber(cpv?.solved))
-    return box("plain", "Survey", `${survey?.verdict ?? "how long frames take, and why"}.`);
-  if (cpv.count === 0) return box("good", "Nothing to do", `no view exceeds ${budget}, so no impostor is needed.`);
+    return verdictBox("plain", "Survey", `${survey?.verdict ?? "how long frames take, and why"}.`);
+  if (cpv.count === 0) return verdictBox("good", "Nothing to do", `no view exceeds ${budget}, so no impostor is needed.`);
   if ((cpv.unsolved ?? 0) > 0)
-    return box(
+    return verdictBox(
       "bad",
       "Budget not met everywhere",
       `${count(cpv.unsolved)} of ${count(cpv.count)} slow regions cannot be brought under ${budget}; the rest is solved.`,
     );
   if ((verify?.over_budget_measured ?? 0) > 0)
-    return box(
+    return verdictBox(
       "bad",
       "Bound met, measurements not",
       `every region's bound lies within ${budget}, but ${count(verify!.over_budget_measured)} of ${count(verify!.views)} measured frames were slower.`,
     );
-  if (metrics.mode === "sampled") return box("plain", "Budget met by the views that were sampled", "nothing is promised of the others.");
-  return box("good", "Budget met", `the time bound of every view in the view space lies within ${budget}.`);
+  if (metrics.mode === "sampled")
+    return verdictBox("plain", "Budget met by the views that were sampled", "nothing is promised of the others.");
+  return verdictBox("good", "Budget met", `the time bound of every view in the view space lies within ${budget}.`);
+}
+
+/// What could be saved at most, where there is something to save from.
+function memoryNote({ impostors, memory: sizes, bound }: Metrics): string {
+  if (impostors?.count === 0 || sizes?.texture_bytes === 0)
+    return (sizes?.lods_bytes ?? 0) > 0 ? "levels of detail alone, no impostors" : "no impostors";
+  if (!isNumber(bound?.gap)) return "";
+  return bound.gap > 0 ? `at most ${percent(bound.gap)} of the textures could be saved` : "no choice of these candidates needs less";
+}
+
+function regionsTile(solved: number, all: number, impostors: number): Tile {
+  if (all === 0) return { title: "Slow regions", figure: "none" };
+  return { title: "Slow regions solved", figure: `${count(solved)} of ${count(all)}`, note: `with ${count(impostors)} impostors` };
 }
 
 export function tiles(metrics: Metrics): HTMLElement {
-  const { cpv, memory, bound, survey } = metrics;
-  const gap = isNumber(bound?.gap) ? `at most ${percent(bound.gap)} of the textures could be saved` : "";
-  const entries: [string, string, string][] = [];
-  if (isNumber(survey?.worst_bound_ms))
-    entries.push([
-      "Slowest view",
-      milliseconds(survey.worst_bound_ms),
-      `time bound without impostors; the slowest sampled one takes ${milliseconds(survey.worst_frame_ms)}`,
-    ]);
-  if (isNumber(cpv?.solved))
-    entries.push([
-      "Slow regions solved",
-      `${count(cpv.solved)} of ${count(cpv.count)}`,
-      `with ${count(metrics.impostors?.count ?? 0)} impostors`,
-    ]);
-  if (isNumber(memory?.total_bytes)) entries.push(["Memory", bytes(memory.total_bytes), gap]);
-  if (isNumber(survey?.reachable_all_ms)) entries.push(["Lowest budget for all views", milliseconds(survey.reachable_all_ms), ""]);
-  return element(
-    "dl",
-    { class: "tiles" },
-    ...entries.map(([title, figure, note]) =>
-      element(
-        "div",
-        { class: "tile" },
-        element("dt", {}, title),
-        element("dd", { class: "figure" }, figure),
-        note !== "" && element("dd", { class: "note" }, note),
-      ),
-    ),
-  );
+  const { cpv, memory: sizes, survey } = metrics;
+  const entries: (Tile | false)[] = [
+    isNumber(survey?.worst_bound_ms) && {
+      title: "Slowest view",
+      figure: milliseconds(survey.worst_bound_ms),
+      note: `time bound without impostors; the slowest sampled one takes ${milliseconds(survey.worst_frame_ms)}`,
+    },
+    isNumber(cpv?.solved) && regionsTile(cpv.solved, cpv.count, metrics.impostors?.count ?? 0),
+    isNumber(sizes?.total_bytes) && { title: "Memory", figure: bytes(sizes.total_bytes), note: memoryNote(metrics) },
+    isNumber(survey?.reachable_all_ms) && { title: "Lowest budget for all views", figure: milliseconds(survey.reachable_all_ms) },
+  ];
+  return tileList(entries.filter((entry) => entry !== false));
 }
 
 const FRAMES: readonly {
@@ -130,7 +122,7 @@ export function frameTimes(metrics: Metrics, signal: AbortSignal): HTMLElement |
   );
 }
 
-export function memory(metrics: Metrics, placement: Placement | null, signal: AbortSignal): HTMLElement | null {
+export function memory(metrics: Metrics, placement: Promise<Placement | null>, signal: AbortSignal): HTMLElement | null {
   const { memory: sizes, bound } = metrics;
   if (!isNumber(sizes?.total_bytes) || sizes.total_bytes === 0) return null;
   const rows = (
@@ -151,7 +143,12 @@ export function memory(metrics: Metrics, placement: Placement | null, signal: Ab
     rows,
     "Memory",
   );
-  return section("memory", "Memory", "", placement !== null && placement.impostors.length > 1 && cumulated(placement, signal), totals);
+  const chart = element("div");
+  placement.then(
+    (found) => found !== null && found.impostors.length > 1 && chart.append(cumulated(found, signal)),
+    () => {}, // the heat map says so
+  );
+  return section("memory", "Memory", "", chart, totals);
 }
 
 /// How much of the memory the largest impostors take.
@@ -188,72 +185,6 @@ export function causes({ causes: found }: Metrics): HTMLElement | null {
   );
 }
 
-interface WorstView {
-  readonly name: string;
-  readonly position: Triple;
-  readonly direction: Triple;
-  readonly before: number | null;
-  readonly after: number | null;
-  readonly flip: number | null;
-}
-
-const measured = (frame: VerifiedFrame, when: "before" | "after") => frame[`${when}_ms`] ?? frame[`estimated_${when}_ms`];
-
-export function worstViews(metrics: Metrics, walkId: string | null, report: Artifact | undefined): HTMLElement | null {
-  const surveyed = (metrics.survey?.worst_views ?? [])
-    .slice(0, 8)
-    .map((view, i): WorstView => ({ ...view, name: `slowest of the survey, ${i + 1}`, before: view.frame_ms, after: null, flip: null }));
-  const verified = [...(metrics.verify?.frames ?? [])]
-    .sort((a, b) => (measured(b, "after") ?? 0) - (measured(a, "after") ?? 0))
-    .slice(0, 8)
-    .map((frame): WorstView => ({
-      ...frame,
-      name: `drawn with impostors (${frame.origin})`,
-      before: measured(frame, "before"),
-      after: measured(frame, "after"),
-      flip: frame.mean_flip,
-    }));
-  const views = [...verified, ...surveyed];
-  if (views.length === 0) return null;
-  const position = (view: WorstView) => view.position.map((value) => significant(value, 4)).join(", ");
-  const compared =
-    verified.length === 0
-      ? []
-      : [
-          { title: "with impostors", number: true, cell: (view: WorstView) => milliseconds(view.after) },
-          { title: "image error (FLIP)", number: true, cell: (view: WorstView) => significant(view.flip, 2) },
-        ];
-  const columns = [
-    { title: "view", cell: (view: WorstView) => view.name },
-    { title: "position, m", cell: position },
-    { title: "before", number: true, cell: (view: WorstView) => milliseconds(view.before) },
-    ...compared,
-    ...(walkId === null
-      ? []
-      : [
-          {
-            title: "",
-            cell: (view: WorstView) =>
-              element(
-                "a",
-                { href: walkAddress(walkId, view.position, view.direction), "aria-label": `walk there: ${position(view)}` },
-                "walk there",
-              ),
-          },
-        ]),
-  ];
-  const lead = walkId === null ? "" : "In the walk, the key I shows each view with and without its impostors.";
-  return section(
-    "views",
-    "Worst views",
-    lead,
-    table(columns, views, "Worst views"),
-    verified.length > 0 &&
-      report !== undefined &&
-      element("p", { class: "soft" }, "Side by side, with their differences: ", artifactLink(report, "report.html"), "."),
-  );
-}
-
 export function unsolved(metrics: Metrics): HTMLElement | null {
   const rows = metrics.unsolved ?? [];
   if (rows.length === 0) return null;
@@ -269,39 +200,5 @@ export function unsolved(metrics: Metrics): HTMLElement | null {
     "Regions without a solution",
     "In these regions no set of impostors keeps the frame within the budget: the objects named are too near, or too deep, for an impostor. Raise the budget, leave the place out of the view space, or simplify or split these objects.",
     table(columns, rows, "Unsolved regions"),
-  );
-}
-
-export function sweepCurve(sweep: Sweep, signal: AbortSignal): HTMLElement {
-  const points = [...sweep.points].sort((a, b) => a.budget_ms - b.budget_ms),
-    at = (holds: (point: SweepPoint) => boolean) => points.map((point) => (holds(point) ? point.texture_bytes : null));
-  const series: Series[] = [
-    { name: "textures", colour: "--after", points: true, values: at((point) => point.met) },
-    { name: "textures, some views unsolved", colour: "--bad", points: true, values: at((point) => !point.met) },
-    { name: "lower bound", colour: "--soft", dash: [3, 4], values: points.map((point) => point.memory_lower_bound_bytes) },
-  ].filter(({ values }) => values.some(isNumber));
-  const chart = lineChart(
-    {
-      label: `Memory of the textures against the frame-time budget, at ${points.length} budgets`,
-      xs: points.map((point) => point.budget_ms),
-      series,
-      x: { label: "frame-time budget, ms", format: (value) => significant(value, 4) },
-      y: { label: "memory", format: bytes },
-    },
-    signal,
-  );
-  const columns = [
-    { title: "budget", number: true, cell: (point: SweepPoint) => milliseconds(point.budget_ms) },
-    { title: "outcome", cell: (point: SweepPoint) => (point.met ? "met" : `${count(point.cpv.unsolved)} unsolved`) },
-    { title: "impostors", number: true, cell: (point: SweepPoint) => count(point.impostors) },
-    { title: "textures", number: true, cell: (point: SweepPoint) => bytes(point.texture_bytes) },
-    { title: "total", number: true, cell: (point: SweepPoint) => bytes(point.total_bytes) },
-  ];
-  return section(
-    "curve",
-    "Memory against the budget",
-    `Budgets: ${sweep.budgets_from}.`,
-    element("figure", {}, chart),
-    table(columns, points, "Points of the curve"),
   );
 }

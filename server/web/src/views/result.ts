@@ -1,16 +1,20 @@
-// A finished job's result: how it went, where the scene is slow, what it costs, and ways into the walk.
+// A finished job's result, by its kind: how it went, what it costs, and ways into the walk.
 
-import { artifactOf, getJob, getText, isFinal, isWalkable, type Job } from "../api";
+import { artifactOf, getJob, getText, isFinal, isWalkable, type Job, type JobKind } from "../api";
 import { artifactLink } from "../artifact_link";
 import { element, folded, section } from "../elements";
 import { jobTitle, stateWord } from "../job_text";
 import { problemBox } from "../problem";
 import { heatMap } from "../result/heat_map";
 import type { Metrics, Sweep } from "../result/metrics";
-import { causes, frameTimes, memory, sweepCurve, tiles, unsolved, verdict, worstViews } from "../result/sections";
+import { causes, frameTimes, memory, tiles, unsolved, verdict } from "../result/sections";
+import { sweepCurve, sweepVerdict } from "../result/sweep";
+import { worstViews } from "../result/worst_views";
 import { jobAddress, type Route } from "../router";
-import { parsePlacement, type Placement } from "../runtime/placement";
+import { parsePlacement } from "../runtime/placement";
 import { count, isNumber, milliseconds } from "../text";
+
+type Shown = (HTMLElement | null)[];
 
 async function artifact<T>(job: Job, path: string, read: (text: string) => T, signal: AbortSignal): Promise<T | null> {
   const found = artifactOf(job, path);
@@ -37,49 +41,58 @@ function context(metrics: Metrics): string {
     .join(" \u00b7 ");
 }
 
-function ways(job: Job): HTMLElement {
+/// Ways out of the result; `own` is the kind's.
+function ways(job: Job, ...own: (HTMLElement | null)[]): HTMLElement {
   const report = artifactOf(job, "report.html");
   return element(
     "div",
     { class: "actions" },
+    ...own,
     isWalkable(job) && element("a", { class: "button primary", href: jobAddress(job.id, "walk") }, "Walk through it"),
     report !== undefined && artifactLink(report, "The whole report", { class: "button" }),
     element("a", { class: "button", href: jobAddress(job.id) }, "Job and files"),
   );
 }
 
-function numbers(job: Job, metrics: Metrics, placement: Placement | null, signal: AbortSignal): (HTMLElement | null)[] {
-  const walkId = placement !== null && isWalkable(job) ? job.id : null;
+async function placed(job: Job, signal: AbortSignal): Promise<Shown | null> {
+  const placement = artifact(job, "placement.json", parsePlacement, signal); // large: the numbers are shown before it has come
+  placement.catch(() => {}); // whoever waits for it says so
+  const metrics = await artifact(job, "metrics.json", parsed<Metrics>, signal);
+  if (metrics === null) return null;
+  const walkId = isWalkable(job) && artifactOf(job, "placement.json") !== undefined ? job.id : null;
   return [
     element("p", { class: "context" }, context(metrics)),
     verdict(metrics),
     tiles(metrics),
     ways(job),
-    heatMap({ metrics, placement, walkId }),
+    heatMap(metrics, placement, walkId),
     frameTimes(metrics, signal),
-    worstViews(metrics, walkId, artifactOf(job, "report.html")),
+    worstViews({ metrics, walkId, job, signal }),
     unsolved(metrics),
     causes(metrics),
     memory(metrics, placement, signal),
   ];
 }
 
+async function swept(job: Job, signal: AbortSignal): Promise<Shown | null> {
+  const sweep = await artifact(job, "sweep.json", parsed<Sweep>, signal);
+  return sweep && [element("p", { class: "context" }, context(sweep)), sweepVerdict(sweep), ways(job), sweepCurve(sweep, signal)];
+}
+
+const SHOWN: Partial<Record<JobKind, (job: Job, signal: AbortSignal) => Promise<Shown | null>>> = {
+  place: placed,
+  survey: placed,
+  sweep: swept,
+};
+
 /// What has no view of its own is shown as it is.
-async function plain(job: Job, signal: AbortSignal): Promise<HTMLElement[]> {
+async function plain(job: Job, signal: AbortSignal): Promise<Shown> {
   const files = job.artifacts.filter(({ type, path }) => type.startsWith("application/json") || path.endsWith(".json"));
-  return Promise.all(
-    files.map(async (file) =>
-      section(
-        file.path,
-        file.path,
-        "",
-        folded(
-          "Numbers",
-          element("pre", { class: "scroll", tabindex: 0 }, JSON.stringify(parsed(await getText(file.href, signal)), null, 2)),
-        ),
-      ),
-    ),
-  );
+  const sections = files.map(async (file) => {
+    const numbers = JSON.stringify(parsed(await getText(file.href, signal)), null, 2);
+    return section(file.path, file.path, "", folded("Numbers", element("pre", { class: "scroll", tabindex: 0 }, numbers)));
+  });
+  return [ways(job), ...(await Promise.all(sections))];
 }
 
 export async function showResult(host: HTMLElement, { id }: Route, signal: AbortSignal): Promise<void> {
@@ -87,18 +100,8 @@ export async function showResult(host: HTMLElement, { id }: Route, signal: Abort
   const status = element("p", { role: "status" }, "Loading the result");
   host.append(status);
   const job = await getJob(id, signal);
-  const name = jobTitle(job);
-  document.title = `Result: ${name} \u2014 Standin`;
-  const [metrics, sweep, placement] = await Promise.all([
-    artifact(job, "metrics.json", parsed<Metrics>, signal),
-    artifact(job, "sweep.json", parsed<Sweep>, signal),
-    artifact(job, "placement.json", parsePlacement, signal),
-  ]);
+  document.title = `Result: ${jobTitle(job)} \u2014 Standin`;
+  const shown = job.artifacts.length === 0 ? [noResult(job)] : ((await SHOWN[job.kind]?.(job, signal)) ?? (await plain(job, signal)));
   if (signal.aborted) return;
-  host.replaceChildren(element("h1", {}, name));
-  if (job.artifacts.length === 0) host.append(noResult(job));
-  else if (sweep !== null) host.append(ways(job), sweepCurve(sweep, signal));
-  else if (metrics !== null && job.kind !== "bake")
-    host.append(...numbers(job, metrics, placement, signal).filter((node) => node !== null));
-  else host.append(ways(job), ...(await plain(job, signal)));
+  host.replaceChildren(element("h1", {}, jobTitle(job)), ...shown.filter((node) => node !== null));
 }

@@ -1,0 +1,52 @@
+// A sweep's result: memory against the frame-time budget.
+
+import { lineChart, type Series } from "../charts";
+import { element, section, table } from "../elements";
+import { bytes, count, isNumber, milliseconds, significant } from "../text";
+import type { Sweep, SweepPoint } from "./metrics";
+import { verdictBox } from "./summary";
+
+/// How low the budget can go, and what that takes.
+export function sweepVerdict({ points }: Sweep): HTMLElement {
+  const met = points.filter((point) => point.met).sort((a, b) => a.budget_ms - b.budget_ms);
+  const [lowest] = met;
+  if (lowest === undefined) return verdictBox("bad", "No budget met", `at each of ${count(points.length)} budgets some regions stay slow.`);
+  const takes = `the lowest that is met, ${milliseconds(lowest.budget_ms)}, takes ${bytes(lowest.texture_bytes)} of textures.`;
+  return met.length === points.length
+    ? verdictBox("good", "Every budget met", takes)
+    : verdictBox("plain", `${count(met.length)} of ${count(points.length)} budgets met`, takes);
+}
+
+export function sweepCurve(sweep: Sweep, signal: AbortSignal): HTMLElement {
+  const points = [...sweep.points].sort((a, b) => a.budget_ms - b.budget_ms),
+    at = (holds: (point: SweepPoint) => boolean) => points.map((point) => (holds(point) ? point.texture_bytes : null));
+  const series: Series[] = [
+    { name: "textures", colour: "--after", points: true, values: at((point) => point.met) },
+    { name: "textures, some views unsolved", colour: "--bad", points: true, values: at((point) => !point.met) },
+    { name: "lower bound", colour: "--soft", dash: [3, 4], values: points.map((point) => point.memory_lower_bound_bytes) },
+  ].filter(({ values }) => values.some(isNumber));
+  const chart = lineChart(
+    {
+      label: `Memory of the textures against the frame-time budget, at ${points.length} budgets`,
+      xs: points.map((point) => point.budget_ms),
+      series,
+      x: { label: "frame-time budget, ms", format: (value) => significant(value, 4) },
+      y: { label: "memory", format: bytes },
+    },
+    signal,
+  );
+  const columns = [
+    { title: "budget", number: true, cell: (point: SweepPoint) => milliseconds(point.budget_ms) },
+    { title: "outcome", cell: (point: SweepPoint) => (point.met ? "met" : `${count(point.cpv.unsolved)} unsolved`) },
+    { title: "impostors", number: true, cell: (point: SweepPoint) => count(point.impostors) },
+    { title: "textures", number: true, cell: (point: SweepPoint) => bytes(point.texture_bytes) },
+    { title: "total", number: true, cell: (point: SweepPoint) => bytes(point.total_bytes) },
+  ];
+  return section(
+    "curve",
+    "Memory against the budget",
+    `Budgets: ${sweep.budgets_from}.`,
+    element("figure", {}, chart),
+    table(columns, points, "Points of the curve"),
+  );
+}
