@@ -5,10 +5,13 @@ import { artifactLink } from "../artifact_link";
 import { element, folded, section } from "../elements";
 import { jobTitle, stateWord } from "../job_text";
 import { problemBox } from "../problem";
+import { bakedView, impostorLink, type Baked } from "../result/baked";
 import { heatMap } from "../result/heat_map";
 import type { Metrics, Sweep } from "../result/metrics";
 import { causes, frameTimes, memory, tiles, unsolved, verdict } from "../result/sections";
 import { sweepCurve, sweepVerdict } from "../result/sweep";
+import { targetView, type Target } from "../result/target";
+import { imageErrors, verificationTiles, verificationVerdict, type Verification } from "../result/verification";
 import { worstViews } from "../result/worst_views";
 import { jobAddress, type Route } from "../router";
 import { parsePlacement } from "../runtime/placement";
@@ -79,10 +82,63 @@ async function swept(job: Job, signal: AbortSignal): Promise<Shown | null> {
   return sweep && [element("p", { class: "context" }, context(sweep)), sweepVerdict(sweep), ways(job), sweepCurve(sweep, signal)];
 }
 
+async function calibrated(job: Job, signal: AbortSignal): Promise<Shown | null> {
+  const target = await artifact(job, "target.json", parsed<Target>, signal);
+  const file = artifactOf(job, "target.json");
+  const download = file === undefined ? null : artifactLink(file, "target.json", { save: true, class: "button primary" });
+  return target && targetView(target, job.aim_met, ways(job, download), signal);
+}
+
+interface Placed {
+  readonly job: Job;
+  readonly metrics: Metrics | null;
+}
+
+/// The placement that was verified; it may have been deleted since.
+async function verifiedPlacement(job: Job, signal: AbortSignal): Promise<Placed | null> {
+  if (job.request.job === undefined) return null;
+  try {
+    const found = await getJob(job.request.job, signal);
+    return { job: found, metrics: await artifact(found, "metrics.json", parsed<Metrics>, signal) };
+  } catch {
+    return null;
+  }
+}
+
+function placementLink(found: Placed | null): HTMLElement {
+  if (found === null) return element("p", { class: "context" }, "The placement that was verified is gone.");
+  const link = element("a", { href: jobAddress(found.job.id, "result") }, jobTitle(found.job));
+  return element("p", { class: "context" }, "Of ", link, found.metrics === null ? "" : ` \u00b7 ${context(found.metrics)}`);
+}
+
+async function verified(job: Job, signal: AbortSignal): Promise<Shown | null> {
+  const [result, of] = await Promise.all([artifact(job, "verify.json", parsed<Verification>, signal), verifiedPlacement(job, signal)]);
+  if (result === null) return null;
+  const budget_ms = of?.metrics?.budget_ms;
+  const metrics: Metrics = { verify: result.verify, ...(isNumber(budget_ms) && { budget_ms }) };
+  return [
+    placementLink(of),
+    verificationVerdict(result, isNumber(budget_ms) ? milliseconds(budget_ms) : undefined),
+    verificationTiles(result),
+    ways(job),
+    frameTimes(metrics, signal),
+    worstViews({ metrics, walkId: of !== null && isWalkable(of.job) ? of.job.id : null, job, signal }),
+    imageErrors(result),
+  ];
+}
+
+async function baked(job: Job, signal: AbortSignal): Promise<Shown | null> {
+  const result = await artifact(job, "metrics.json", parsed<Baked>, signal);
+  return result && bakedView(result, job, ways(job, impostorLink(job)), signal);
+}
+
 const SHOWN: Partial<Record<JobKind, (job: Job, signal: AbortSignal) => Promise<Shown | null>>> = {
   place: placed,
   survey: placed,
   sweep: swept,
+  calibrate: calibrated,
+  verify: verified,
+  bake: baked,
 };
 
 /// What has no view of its own is shown as it is.
