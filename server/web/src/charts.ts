@@ -57,7 +57,10 @@ function options(chart: Chart, width: number): uPlot.Options {
     axes: [axis(chart.x.label, chart.x.format, 40), axis(chart.y.label, chart.y.format, 74)],
     series: [{ label: chart.x.label, value: (_, value) => (isNumber(value) ? chart.x.format(value) : NONE) }, ...series],
     cursor: { drag: { x: false, y: false } },
-    legend: { show: chart.series.length > 1 },
+    legend: {
+      show: chart.series.length > 1,
+      markers: { dash: (_, index) => (chart.series[index - 1]?.dash === undefined ? "solid" : "dotted") },
+    },
   };
 }
 
