@@ -50,7 +50,12 @@ const VIEWS = {
   "failed job": "#/jobs/failed",
   "finished job": "#/jobs/done",
   result: "#/jobs/done/result",
+  "result with causes and pictures": "#/jobs/explained/result",
   survey: "#/jobs/survey/result",
+  sweep: "#/jobs/swept/result",
+  calibration: "#/jobs/calibrated/result",
+  verification: "#/jobs/missed/result",
+  bake: "#/jobs/baked/result",
   "no result": "#/jobs/cancelled/result",
   "nothing to walk through": "#/jobs/failed/walk",
   "unknown address": "#/elsewhere",
@@ -67,6 +72,17 @@ for (const scheme of ["light", "dark"])
       noFaults();
     }
   });
+
+test("every view fits a telephone", async () => {
+  await tab.page.setViewport({ width: 375, height: 812 });
+  for (const [name, hash] of Object.entries(VIEWS)) {
+    await visit(tab, hash);
+    await tab.page.waitForNetworkIdle({ idleTime: 150, concurrency: 1 });
+    assert.equal(await tab.page.evaluate(() => document.documentElement.scrollWidth > innerWidth), false, name);
+  }
+  await tab.page.setViewport({ width: 1280, height: 900 });
+  noFaults();
+});
 
 test("states say what they mean", async () => {
   await visit(tab, "#/jobs/failed");
@@ -121,7 +137,7 @@ test("keys walk, the address follows, and leaving the view space is said", async
 });
 
 test("the heat map leads into the walk by keyboard", async () => {
-  await visit(tab, "#/jobs/done/result", "svg.plate");
+  await visit(tab, "#/jobs/done/result", "svg.plate .objects");
   await tab.page.$eval("svg.plate", (node) => node.focus());
   await press("ArrowRight");
   const slowest = Math.max(...metrics.heat_map.map((cell) => cell.before_ms));
