@@ -78,6 +78,10 @@ test("a job is submitted, watched to its end, and its result opened", async () =
   await tab.page.evaluate(() => [...document.querySelectorAll("main a")].find((node) => node.textContent === "Result").click());
   await tab.page.waitForSelector("svg.plate", { timeout: 30_000 });
   assert.match(await textOf(tab), /small city[^]*60 objects/);
+  await tab.page.waitForFunction(() => [...document.querySelectorAll(".worst-view")].some((view) => view.querySelector("img").naturalWidth > 0));
+  await tab.page.$eval("svg.plate", (node) => node.focus());
+  await tab.page.keyboard.press("ArrowRight");
+  assert.match(await textOf(tab), /\d % triangles.*most by \S+ \([\d.]+ ms\)/, "the slowest cell has a cause");
   await expectAccessible(tab, "result");
   assert.deepEqual(tab.faults.splice(0), []);
 });
@@ -100,4 +104,34 @@ test("the walk switches the impostors that the service's placement names", async
   await visit(tab, "#/", "table");
   assert.match(await textOf(tab), /small city/);
   assert.deepEqual(tab.faults.splice(0), []);
+});
+
+/** Submits what is filled in, and opens its result. */
+async function resultOfSubmitted() {
+  await tab.page.click("button[type=submit]");
+  await waitForText(tab, /succeeded[^]*result\.json/, 60_000);
+  await tab.page.evaluate(() => [...document.querySelectorAll("main a")].find((node) => node.textContent === "Result").click());
+  await tab.page.waitForSelector(".verdict", { timeout: 30_000 });
+}
+const newJob = async (kind) => {
+  await visit(tab, "#/new", "#scene-file");
+  await tab.page.click(`#kind-${kind}`);
+};
+const first = (select) => tab.page.$eval(`${select} option:nth-child(2)`, (node) => ((node.parentElement.value = node.value), node.textContent));
+
+test("a placement is verified, and one impostor baked, from the form", async () => {
+  await newJob("verify");
+  assert.match(await first("#placement"), /small city/);
+  await set("argument-judged_views", "4");
+  await set("set-verify-views", "4");
+  await resultOfSubmitted();
+  assert.match(await textOf(tab), /Of small city[^]*rays in 4 views found no gap[^]*Image errors/);
+  await newJob("bake");
+  await first("#scene");
+  await set("argument-objects", "2");
+  await set("argument-view_cell", "shaft:1,0.2,0,30,300");
+  await set("argument-views", "4");
+  await resultOfSubmitted();
+  assert.match(await textOf(tab), /impostor of object 2 of city\.glb[^]*rays in 4 views of its view cell found no gap[^]*impostors\.glb/);
+  assert.deepEqual(tab.faults.splice(0).filter((fault) => !fault.endsWith("/v1/presets")), []);
 });

@@ -78,6 +78,7 @@ const ARGUMENTS: Partial<Record<JobKind, readonly Argument[]>> = {
   calibrate: [
     { name: "seconds", label: "seconds", help: "time to spend; empty: the default", numeric: true },
     { name: "target_error", label: "target error", help: "stop at this median error, a share such as 0.1", numeric: true },
+    { name: "coverage", label: "coverage", help: "share of frames that the bound is to cover, such as 0.99", numeric: true },
   ],
   bake: [
     { name: "objects", label: "objects", help: "ids to stand for, such as 3-9", numeric: false },
@@ -85,7 +86,7 @@ const ARGUMENTS: Partial<Record<JobKind, readonly Argument[]>> = {
     { name: "technique", label: "technique", help: "layered, tdm, planar or lod-sprite", numeric: false },
     { name: "views", label: "views", help: "views to judge the image in", numeric: true },
   ],
-  verify: [{ name: "views", label: "views", help: "views to render and measure", numeric: true }],
+  verify: [{ name: "judged_views", label: "judged views", help: "views inside view cells to judge by rays", numeric: true }],
 };
 
 function field(pointer: string, id: string, label: string, input: HTMLElement, help: string): HTMLElement {
