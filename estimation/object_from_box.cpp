@@ -30,6 +30,7 @@ void enclose(SampleBlock& block, std::size_t lanes) {
 std::vector<SampleBlock> facing_blocks(std::span<const SurfaceSample> samples, const PlacedMesh& mesh, bool double_sided,
                                        const ProjectionFromBox& projection, const Box& eyes) {
   std::vector<SampleBlock> blocks;
+  blocks.reserve((samples.size() + kLanes - 1) / kLanes);  // they are large: nothing is to be moved twice
   std::size_t lane = kLanes;
   for (const SurfaceSample& sample : samples) {
     const Patch patch = mesh.place(sample);

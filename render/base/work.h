@@ -42,6 +42,8 @@ class WorkBudget {
   void found(std::initializer_list<Finding> best) const {
     if (findings_) findings_(best);
   }
+  /// For a part of the work whose findings are not those of the whole.
+  [[nodiscard]] WorkBudget without_findings() const { return WorkBudget(stop_, progress_); }
 
  private:
   const std::atomic<bool>* stop_ = nullptr;

@@ -17,8 +17,8 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::size_t kRegions = 16;
-constexpr std::size_t kLeaves = 8;
+constexpr std::size_t kRegions = 8;
+constexpr std::size_t kLeaves = 4;
 constexpr std::size_t kImpostors = 8;
 
 json point(double seconds, double work, double error, const char* unit) {

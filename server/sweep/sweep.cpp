@@ -123,9 +123,10 @@ SweptPoint sweep_budget(Surveyed& job, JobSpec spec, double budget_ms, BakeMemor
 /// From loose to tight: the bakes of one budget serve the next.
 std::vector<SweptPoint> sweep_budgets(Surveyed& job, const JobSpec& spec, const std::vector<double>& budgets_ms, const WorkBudget& budget) {
   BakeMemory bakes;
+  const WorkBudget of_a_point = budget.without_findings();
   std::vector<SweptPoint> swept;
   for (const double budget_ms : budgets_ms | std::views::reverse) {
-    swept.push_back(sweep_budget(job, spec, budget_ms, bakes, budget));
+    swept.push_back(sweep_budget(job, spec, budget_ms, bakes, of_a_point));
     const auto met = std::ranges::count_if(swept, [](const SweptPoint& one) { return one.point.met(); });
     budget.found({{"points", static_cast<double>(swept.size())}, {"unsolved_points", static_cast<double>(std::ssize(swept) - met)}});
   }
