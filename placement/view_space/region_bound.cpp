@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <limits>
 #include <numeric>
-#include <ranges>
 #include <string>
 
 #include "placement/view_space/region_sample.h"
@@ -110,8 +109,8 @@ RegionBound RegionEstimator::region_bound(CellCosts& cell, const DirectionInterv
   for (const std::uint32_t i : seen) costs.push_back(cell.objects[i].cost);
   std::vector<DirectionInterval> chain;
   for (DirectionInterval node = interval; node.level >= first_sharp_level(cell); node = node.parent()) chain.push_back(node);
-  for (const DirectionInterval& node : std::views::reverse(chain))
-    (void)sharpen(cell, node, seen, costs, -std::numeric_limits<double>::infinity());
+  std::ranges::reverse(chain);
+  for (const DirectionInterval& node : chain) (void)sharpen(cell, node, seen, costs, -std::numeric_limits<double>::infinity());
   return bound_of(cell, seen, costs);
 }
 

@@ -9,7 +9,7 @@ std::shared_ptr<const RememberedSearch> SearchMemory::recall(const SearchRequest
 }
 
 void SearchMemory::keep(const SearchRequest& request, const DirectionSearchResult& found) {
-  auto fresh = std::make_shared<const RememberedSearch>(request.predicted_budget_ms, found);
+  auto fresh = std::make_shared<const RememberedSearch>(RememberedSearch{request.predicted_budget_ms, found});
   const std::scoped_lock lock(mutex_);
   cells_[request.cell] = std::move(fresh);
 }

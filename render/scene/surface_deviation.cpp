@@ -6,7 +6,6 @@
 #include <numeric>
 #include <optional>
 #include <queue>
-#include <ranges>
 #include <utility>
 
 namespace standin {
@@ -287,9 +286,9 @@ SurfaceTree::Nearest SurfaceTree::nearest(const SurfacePoint& point, std::uint32
 
 Deviation deviation(const Surface& from, const SurfaceTree& to, const DeviationLimits& limits) {
   if (from.triangles.empty()) return {};
-  const auto finite = [&](std::size_t t) { return is_finite(from.corners(t)); };
-  if (to.empty() || !to.finite() || !std::ranges::all_of(std::views::iota(std::size_t{0}, from.triangles.size()), finite))
-    return {kInfinity, kInfinity, 0};
+  bool finite = true;
+  for (std::size_t t = 0; t < from.triangles.size(); ++t) finite = finite && is_finite(from.corners(t));
+  if (to.empty() || !to.finite() || !finite) return {kInfinity, kInfinity, 0};
   return DeviationSearch(to, limits).run(from);
 }
 

@@ -35,8 +35,7 @@ Surface surface_over(const std::vector<SurfaceTriangle>& triangles) {
   Surface surface;
   for (const SurfaceTriangle& corners : triangles) surface.points.insert(surface.points.end(), corners.begin(), corners.end());
   std::ranges::sort(surface.points, before);
-  const auto repeated = std::ranges::unique(surface.points, same);
-  surface.points.erase(repeated.begin(), repeated.end());
+  surface.points.erase(std::unique(surface.points.begin(), surface.points.end(), same), surface.points.end());
   const auto number = [&](const SurfacePoint& point) {
     return static_cast<std::uint32_t>(std::ranges::lower_bound(surface.points, point, before) - surface.points.begin());
   };
@@ -136,10 +135,9 @@ TexturedSurface::Groups TexturedSurface::groups_of(const Mesh& mesh, const std::
 bool TexturedSurface::holds_kept(const Mesh& simple, std::vector<bool>& held) const {
   std::vector<bool> found(kept_keys_.size(), false);
   for (std::size_t t = 0; t < held.size() && !kept_keys_.empty(); ++t) {
-    const auto same_triangle = std::ranges::equal_range(kept_keys_, ComparedSurface::key_of(corners_of(simple, t, 1.0)));
-    held[t] = !same_triangle.empty();
-    for (auto key = same_triangle.begin(); key != same_triangle.end(); ++key)
-      found[static_cast<std::size_t>(key - kept_keys_.begin())] = true;
+    const auto [begin, end] = std::equal_range(kept_keys_.begin(), kept_keys_.end(), ComparedSurface::key_of(corners_of(simple, t, 1.0)));
+    held[t] = begin != end;
+    for (auto key = begin; key != end; ++key) found[static_cast<std::size_t>(key - kept_keys_.begin())] = true;
   }
   return std::ranges::find(found, false) == found.end();
 }

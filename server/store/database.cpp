@@ -15,8 +15,8 @@ constexpr int kWait_ms = 5000;  // for another process, such as a backup
 
 }  // namespace
 
-void PreparedStatement::Finalize::operator()(sqlite3_stmt* statement) const {
-  sqlite3_finalize(statement);
+void PreparedStatement::Finalize::operator()(sqlite3_stmt* finished) const {
+  sqlite3_finalize(finished);
 }
 
 void Query::GiveBack::operator()(PreparedStatement* prepared) const {

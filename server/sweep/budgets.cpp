@@ -39,7 +39,7 @@ SweepBudgets choose_budgets(double reachable_ms, double worst_bound_ms) {
 
 std::vector<double> ascending(std::vector<double> budgets_ms) {
   std::ranges::sort(budgets_ms);
-  budgets_ms.erase(std::ranges::unique(budgets_ms).begin(), budgets_ms.end());
+  budgets_ms.erase(std::unique(budgets_ms.begin(), budgets_ms.end()), budgets_ms.end());
   return budgets_ms;
 }
 

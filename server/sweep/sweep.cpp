@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <optional>
-#include <ranges>
 
 #include "render/base/sha256.h"
 #include "render/base/staged_file.h"
@@ -125,8 +124,8 @@ std::vector<SweptPoint> sweep_budgets(Surveyed& job, const JobSpec& spec, const 
   BakeMemory bakes;
   const WorkBudget of_a_point = budget.without_findings();
   std::vector<SweptPoint> swept;
-  for (const double budget_ms : budgets_ms | std::views::reverse) {
-    swept.push_back(sweep_budget(job, spec, budget_ms, bakes, of_a_point));
+  for (auto budget_ms = budgets_ms.rbegin(); budget_ms != budgets_ms.rend(); ++budget_ms) {
+    swept.push_back(sweep_budget(job, spec, *budget_ms, bakes, of_a_point));
     const auto met = std::ranges::count_if(swept, [](const SweptPoint& one) { return one.point.met(); });
     budget.found({{"points", static_cast<double>(swept.size())}, {"unsolved_points", static_cast<double>(std::ssize(swept) - met)}});
   }
