@@ -41,6 +41,16 @@ void check_string(const json& schema, const json& value, const std::string& plac
     reject_value(place, value, "at most " + schema["maxLength"].dump() + " bytes");
 }
 
+void check_members(const json& schema, const json& value, const std::string& place) {
+  for (const json& name : schema.value("required", json::array()))
+    if (!value.contains(name.get<std::string>())) reject_value(place, value, "has " + name.dump());
+  for (const auto& [name, member] : value.items()) {
+    if (!schema.contains("properties") || !schema["properties"].contains(name))
+      reject_value(place, value, "has no member " + json(name).dump());
+    check_value(schema["properties"][name], member, place + "." + name);
+  }
+}
+
 }  // namespace
 
 void reject_value(const std::string& place, const json& value, const std::string& constraint) {
@@ -54,6 +64,7 @@ void check_value(const json& schema, const json& value, const std::string& place
   check_type(schema, value, place);
   if (value.is_number()) check_number(schema, value, place);
   if (value.is_string()) check_string(schema, value, place);
+  if (value.is_object()) check_members(schema, value, place);
   if (!value.is_array()) return;
   if (schema.contains("minItems") && value.size() < schema["minItems"])
     reject_value(place, value, "at least " + schema["minItems"].dump() + " items");

@@ -1,6 +1,7 @@
 // A value from outside (a configuration file, a flag, a request) against the JSON Schema of its setting.
 //
-// The part of JSON Schema that settings use: type, enum, maxLength, minimum, exclusiveMinimum, maximum, minItems, maxItems, items.
+// The part of JSON Schema that settings use: type, enum, maxLength, minimum, exclusiveMinimum, maximum, minItems, maxItems, items, and of
+// objects, which have no further members: properties, required.
 #pragma once
 
 #include <nlohmann/json.hpp>

@@ -53,6 +53,17 @@ TEST(JobRequest, EveryKindSaysWhatItNeeds) {
   EXPECT_THAT(pointers_of({{"kind", 7}}), ElementsAre("/kind"));
 }
 
+TEST(JobRequest, BoxesAreLookedAtToTheirNumbers) {
+  const json corner = {0, 1, 2}, box = {{"min", corner}, {"max", corner}};
+  EXPECT_EQ(parse_job_request(with(place(), "/spec/view_space/boxes", {box, box})).spec.boxes.size(), 2U);
+  for (const json& wrong : {json(5), json::array(), json("x"), json{{"min", corner}}, json{{"min", corner}, {"max", 3}},
+                            json{{"min", corner}, {"max", {0, 1}}}, json{{"min", corner}, {"max", {0, 1, "2"}}},
+                            json{{"min", corner}, {"max", {0, 1, 2, 3}}}, json{{"min", corner}, {"max", corner}, {"mid", corner}}})
+    EXPECT_THAT(pointers_of(with(place(), "/spec/view_space/boxes", json::array({box, wrong}))),
+                testing::ElementsAre("/spec/view_space/boxes"))
+        << wrong;
+}
+
 TEST(JobRequest, WhatIsTheServicesOwnIsRefused) {
   for (const char* pointer : {"/spec/cache/folder", "/spec/cache/update", "/spec/scene/texture_folders", "/spec/threads", "/spec/device"})
     EXPECT_THAT(pointers_of(with(place(), pointer, json::array())), testing::ElementsAre(pointer)) << pointer;
