@@ -1,5 +1,7 @@
 #include "server/verify/glb_quads.h"
 
+#include <set>
+
 #include "render/base/error.h"
 #include "render/image/image_io.h"
 #include "render/scene/gltf_file.h"
@@ -90,17 +92,19 @@ void add_meshes(GltfFile& file, const Json& node, const std::string& place, cons
   for (const Json& primitive : *primitives) add_primitive(file, primitive, quads, mesh_place, impostor);
 }
 
-void add_nodes(GltfFile& file, std::uint64_t index, const Vec3& parent_origin, int depth, GlbQuads& quads) {
+// `seen`: a node has one place; whoever visits all ways to it never comes to an end.
+void add_nodes(GltfFile& file, std::uint64_t index, const Vec3& parent_origin, int depth, std::set<std::uint64_t>& seen, GlbQuads& quads) {
   if (depth > kDeepestNode) fail("nodes are nested without end");
   const std::string place = "nodes[" + std::to_string(index) + "]";
   const Json& node = file.item("nodes", index, place);
+  if (!seen.insert(index).second) fail(place + " occurs twice in the node tree");
   const Vec3 origin = parent_origin + translation_of(node, place);
   if (text(node, "name").starts_with("imp_")) {
     GlbImpostor impostor{text(node, "name"), origin, {}};
     add_meshes(file, node, place, quads, impostor);
     quads.impostors.push_back(std::move(impostor));
   }
-  for (const auto child : index_list(node, "children", place)) add_nodes(file, child, origin, depth + 1, quads);
+  for (const auto child : index_list(node, "children", place)) add_nodes(file, child, origin, depth + 1, seen, quads);
 }
 
 }  // namespace
@@ -115,9 +119,10 @@ GlbQuads read_glb_quads(const std::string& bytes) {
   GltfFile file({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()}, SceneFolder("impostors.glb"));
   GlbQuads quads;
   for (std::uint64_t material = 0; material < file.count("materials"); ++material) quads.pages.push_back(page_of(file, material));
+  std::set<std::uint64_t> seen;
   for (std::uint64_t scene = 0; scene < file.count("scenes"); ++scene) {
     const std::string place = "scenes[" + std::to_string(scene) + "]";
-    for (const auto root : index_list(file.item("scenes", scene, place), "nodes", place)) add_nodes(file, root, Vec3(0.0), 0, quads);
+    for (const auto root : index_list(file.item("scenes", scene, place), "nodes", place)) add_nodes(file, root, Vec3(0.0), 0, seen, quads);
   }
   return quads;
 }

@@ -48,5 +48,12 @@ TEST(GlbQuads, RefusesBrokenFiles) {
   expect_broken(write_glb({"imp_0", Vec3(0.0), "BLEND", {{}}}));
 }
 
+// Each of 60 nodes names the next one twice: without a look at what was visited, there are 2^60 ways down.
+TEST(GlbQuads, RefusesNodesThatAreNoTree) {
+  std::string nodes;
+  for (int i = 1; i <= 60; ++i) nodes += R"({"children":[)" + std::to_string(i) + "," + std::to_string(i) + "]},";
+  expect_broken(R"({"asset":{"version":"2.0"},"scenes":[{"nodes":[0]}],"nodes":[)" + nodes + "{}]}");
+}
+
 }  // namespace
 }  // namespace standin
