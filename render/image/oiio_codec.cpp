@@ -30,9 +30,10 @@ ImageSpec reading_config() {
 
 std::string check_size(const ImageSpec& spec) {
   const auto pixels = static_cast<std::int64_t>(spec.width) * spec.height;
-  if (spec.width > 0 && spec.height > 0 && spec.nchannels > 0 && pixels <= kMaxPixels) return "";
+  const bool fits = pixels <= kMaxPixels && spec.nchannels <= 4 * kMaxPixels / std::max<std::int64_t>(pixels, 1);
+  if (spec.width > 0 && spec.height > 0 && spec.nchannels > 0 && fits) return "";
   return "has " + std::to_string(spec.width) + " x " + std::to_string(spec.height) + " pixels of " + std::to_string(spec.nchannels) +
-         " channels, outside 1.." + std::to_string(kMaxPixels) + " pixels of at least one";
+         " channels, outside 1.." + std::to_string(kMaxPixels) + " pixels of four channels";
 }
 
 // Grey, grey and alpha, RGB or RGBA (further channels ignored) to RGBA.

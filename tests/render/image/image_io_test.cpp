@@ -115,5 +115,16 @@ TEST(ImageIo, RefusesAHeaderThatClaimsTooManyPixels) {
   EXPECT_EQ(word_of([&] { (void)read_image(file); }), ErrorWord::kFileBroken);
 }
 
+// 268 GB, if it were believed.
+TEST(ImageIo, RefusesAHeaderThatClaimsTooManyChannels) {
+  const fs::path file = temporary_file("channels.sgi", sgi(16384, 16384, std::vector<std::string>(1000)));
+  try {
+    (void)read_image(file);
+    FAIL() << "it was read";
+  } catch (const Failure& failure) {
+    EXPECT_NE(std::string(failure.what()).find("1000 channels"), std::string::npos) << failure.what();
+  }
+}
+
 }  // namespace
 }  // namespace standin
