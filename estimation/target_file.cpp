@@ -7,6 +7,7 @@
 #include "estimation/learning_curve_json.h"
 #include "estimation/time_model.h"
 #include "render/base/error.h"
+#include "render/base/json_text.h"
 #include "render/base/sha256.h"
 #include "render/base/staged_file.h"
 
@@ -130,19 +131,11 @@ void check_format(const Json& json, const std::filesystem::path& file) {
                                                   std::to_string(kVersion));
 }
 
-Json parse(const std::string& bytes, const std::filesystem::path& file) {
-  try {
-    return Json::parse(bytes);
-  } catch (const Json::exception& error) {
-    throw Failure(ErrorWord::kFileBroken, "target file " + file.string() + " is not JSON: " + error.what());
-  }
-}
-
 }  // namespace
 
 Target read_target(const std::filesystem::path& file) {
   const std::string bytes = read_file(file);
-  const Json json = parse(bytes, file);
+  const Json json = parse_json(bytes, "target file " + file.string());
   check_format(json, file);
   const Reader root(json, file.string());
   Target target;

@@ -5,6 +5,7 @@
 
 #include "placement/check/check.h"
 #include "render/base/error.h"
+#include "render/base/json_text.h"
 #include "render/base/sha256.h"
 #include "render/base/staged_file.h"
 #include "render/scene/hierarchy.h"
@@ -30,9 +31,7 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 
 json read_json(const fs::path& file) {
-  json object = json::parse(read_file(file), nullptr, false);
-  if (object.is_discarded()) throw Failure(ErrorWord::kFileBroken, file.string() + " is not JSON");
-  return object;
+  return parse_json(read_file(file), file.string());
 }
 
 // A result folder with its inputs opened again; inputs that changed since are refused.

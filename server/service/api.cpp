@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "render/base/error.h"
+#include "render/base/json_text.h"
 
 namespace standin {
 namespace {
@@ -79,26 +80,16 @@ void require_length(const HttpRequest& request, std::uint64_t most_bytes) {
                   "a body of " + std::to_string(announced) + " bytes, no more than " + std::to_string(most_bytes) + " are taken");
 }
 
-// What reads a body goes down as deep as it is.
-json parsed(const std::string& text) {
-  constexpr int kDeepest = 16;
-  const auto not_too_deep = [](int depth, json::parse_event_t, const json&) {
-    if (depth > kDeepest) throw Failure(ErrorWord::kBadRequest, "the body is nested more than " + std::to_string(kDeepest) + " deep");
-    return true;
-  };
-  json body = json::parse(text, not_too_deep, false);
-  if (body.is_discarded()) throw Failure(ErrorWord::kBadRequest, "the body is not JSON");
-  return body;
-}
-
 // At least one.
 unsigned share_of(unsigned most, double share) {
   return std::max(1U, static_cast<unsigned>(std::floor(share * most)));
 }
 
-std::string host_name(std::string host) {
-  if (host.starts_with('[')) return host.substr(0, host.find(']') + 1);
-  return host.substr(0, host.find(':'));
+// An address in brackets, or a name; what is neither is no host's name.
+std::string host_name(const std::string& host) {
+  const std::size_t bracket = host.starts_with('[') ? host.find(']') : host.find(':');
+  if (!host.starts_with('[')) return host.substr(0, bracket);
+  return bracket == std::string::npos ? host : host.substr(0, bracket + 1);
 }
 
 json presets_of(const fs::path& folder) {
@@ -132,6 +123,7 @@ void harden(HttpResponse& response) {
   if (!has("Content-Security-Policy")) response.headers.emplace_back("Content-Security-Policy", "sandbox; default-src 'none'");
 }
 
+constexpr int kDeepestBody = 16;
 const std::set<std::string> kUploadTypes = {"application/octet-stream", "application/json", "model/gltf-binary", "application/zip"};
 
 }  // namespace
@@ -234,7 +226,8 @@ std::unique_ptr<BodySink> Api::begin(HttpRequest& request) {
 HttpResponse Api::answer(const HttpRequest& request, BodySink& body) {
   const Match found = match(request);
   Exchange exchange{request, found.path, nullptr};
-  if (found.route->body == Body::kJson) exchange.body = parsed(dynamic_cast<TextBody&>(body).text());
+  if (found.route->body == Body::kJson)
+    exchange.body = parse_json(dynamic_cast<TextBody&>(body).text(), "the body", ErrorWord::kBadRequest, kDeepestBody);
   if (found.route->body == Body::kUpload) exchange.upload = &dynamic_cast<UploadBody&>(body).incoming();
   HttpResponse response = (this->*found.route->handler)(exchange);
   if (request.path.starts_with("/v1")) harden(response);

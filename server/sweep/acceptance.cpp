@@ -4,6 +4,7 @@
 #include <set>
 
 #include "render/base/error.h"
+#include "render/base/json_text.h"
 #include "render/base/staged_file.h"
 
 namespace standin {
@@ -75,9 +76,7 @@ std::vector<std::string> failures_of(const Criterion& criterion, const CurvePoin
 }  // namespace
 
 std::vector<Criterion> read_acceptance(const std::filesystem::path& file) {
-  const json list = json::parse(read_file(file), nullptr, false);
-  if (list.is_discarded()) throw Failure(ErrorWord::kFileBroken, file.string() + " is not JSON");
-  return acceptance_from_json(list, file.string());
+  return acceptance_from_json(parse_json(read_file(file), file.string()), file.string());
 }
 
 std::vector<Criterion> acceptance_from_json(const json& list, const std::string& source) {

@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "render/base/error.h"
+#include "render/base/json_text.h"
 #include "render/base/staged_file.h"
 
 namespace standin {
@@ -40,9 +41,7 @@ std::string growth(std::uint64_t before, std::uint64_t after) {
 }  // namespace
 
 Curve read_baseline(const std::filesystem::path& file) {
-  const json object = json::parse(read_file(file), nullptr, false);
-  if (object.is_discarded()) throw Failure(ErrorWord::kFileBroken, file.string() + " is not JSON");
-  return curve_from_json(object, file.string());
+  return curve_from_json(parse_json(read_file(file), file.string()), file.string());
 }
 
 void require_same_subject(const CurveSubject& baseline, const CurveSubject& now, const std::string& source) {

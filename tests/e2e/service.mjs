@@ -208,7 +208,7 @@ function exchange(text, { host, port } = { host: new URL(url).hostname, port: ne
 }
 
 test("malformed HTTP and names that resolve to this machine reach nothing", async () => {
-  assert.match(await exchange("GET /v1/jobs HTTP/1.1\r\nHost: evil.example\r\n\r\n"), /^HTTP\/1\.1 403 /);
+  for (const host of ["evil.example", "[evil.example"]) assert.match(await exchange(`GET /v1/jobs HTTP/1.1\r\nHost: ${host}\r\n\r\n`), /^HTTP\/1\.1 403 /);
   assert.match(await exchange("GET / HTTP/1.1\r\nHost: localhost\r\nX: " + "a".repeat(100_000) + "\r\n\r\n"), /^HTTP\/1\.1 431 |^$/);
   assert.doesNotMatch(await exchange("GET /../../../../etc/passwd HTTP/1.1\r\nHost: localhost\r\n\r\n"), /root:/);
   assert.doesNotMatch(await exchange("GET /assets/%2e%2e/%2e%2e/etc/passwd HTTP/1.1\r\nHost: localhost\r\n\r\n"), /root:/);

@@ -188,6 +188,17 @@ TEST_F(TargetFile, TruncatedAnywhereIsRefused) {
   EXPECT_EQ(failure_of_reading(file())->word(), ErrorWord::kFileBroken);
 }
 
+// Whoever shows, copies or compares a value goes down as deep as it is nested.
+TEST_F(TargetFile, NestedWithoutEndIsRefused) {
+  for (const char* head : {R"({"format": )", R"({"format": "standin.target", "version": 2, "id": )"}) {
+    write_text(head + std::string(200'000, '[') + std::string(200'000, ']') + "}");
+    const auto failure = failure_of_reading(file());
+    ASSERT_TRUE(failure);
+    EXPECT_EQ(failure->word(), ErrorWord::kFileBroken);
+    EXPECT_NE(std::string(failure->what()).find("deep"), std::string::npos) << failure->what();
+  }
+}
+
 TEST_F(TargetFile, MissingOrUnwritableIsSaid) {
   EXPECT_EQ(failure_of_reading(folder_ / "none.json")->word(), ErrorWord::kFileMissing);
   EXPECT_EQ(failure_of_reading(folder_)->word(), ErrorWord::kFileMissing);
