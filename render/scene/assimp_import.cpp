@@ -55,8 +55,9 @@ class ConfinedFiles : public Assimp::DefaultIOSystem {
   }
 
   [[nodiscard]] bool inside(const char* file) const {
-    const fs::path relative = fs::weakly_canonical(fs::absolute(file)).lexically_relative(folder_.path());
-    return !relative.empty() && *relative.begin() != "..";
+    std::error_code unknown;
+    const fs::path relative = fs::weakly_canonical(fs::absolute(file), unknown).lexically_relative(folder_.path());
+    return !unknown && !relative.empty() && *relative.begin() != "..";
   }
 
   SceneFolder folder_;

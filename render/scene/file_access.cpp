@@ -44,6 +44,11 @@ std::string objection(const std::string& path) {
   return "";
 }
 
+std::string shown(const std::string& path) {
+  constexpr std::size_t kMost = 200;
+  return path.size() > kMost ? path.substr(0, kMost) + " ..." : path;
+}
+
 int base64_digit(char c) {
   if (c >= 'A' && c <= 'Z') return c - 'A';
   if (c >= 'a' && c <= 'z') return c - 'a' + 26;
@@ -79,12 +84,14 @@ fs::path SceneFolder::resolve_path(const std::string& path) const {
   }
   std::string wrong = objection(slashed);
   if (wrong.empty()) {
-    fs::path target = fs::weakly_canonical(folder_ / slashed);
+    std::error_code unknown;  // a name that is too long, links in a circle
+    fs::path target = fs::weakly_canonical(folder_ / slashed, unknown);
     const fs::path inside = target.lexically_relative(folder_);
-    if (!inside.empty() && *inside.begin() != "..") return target;
-    wrong = "leads out of " + folder_.string();
+    if (!unknown && !inside.empty() && *inside.begin() != "..") return target;
+    wrong = unknown ? "names no file: " + unknown.message() : "leads out of " + folder_.string();
   }
-  throw Failure(ErrorWord::kUriForbidden, "the reference '" + path + "' " + wrong + "; a scene may only name files in its own folder");
+  throw Failure(ErrorWord::kUriForbidden,
+                "the reference '" + shown(path) + "' " + wrong + "; a scene may only name files in its own folder");
 }
 
 bool is_data_uri(const std::string& uri) {

@@ -16,7 +16,7 @@ constexpr std::uint64_t kUnsignedShort = 5123;
 constexpr std::uint64_t kUnsignedInt = 5125;
 constexpr std::uint64_t kFloat = 5126;
 
-// An accessor without bytes costs the file nothing and us its elements.
+// Accessors without bytes cost the file nothing and us their elements: so many in a file.
 constexpr std::uint64_t kMaxZeros = std::uint64_t{1} << 24;
 
 std::size_t size_of_component(std::uint64_t type, const std::string& place) {
@@ -119,8 +119,10 @@ GltfFile::Elements GltfFile::elements(std::uint64_t accessor, std::size_t compon
                                               std::to_string(components) + " are needed");
   }
   if (member(json, "bufferView") != nullptr) return located(json, shape, false);
-  if (shape.count > kMaxZeros) {
-    throw Failure(ErrorWord::kFileBroken, shape.place + " has " + std::to_string(shape.count) + " elements and no bytes");
+  zeros_ += std::min<std::uint64_t>(shape.count, kMaxZeros + 1);
+  if (zeros_ > kMaxZeros) {
+    throw Failure(ErrorWord::kFileBroken, shape.place + " has " + std::to_string(shape.count) + " elements and no bytes; a file may have " +
+                                              std::to_string(kMaxZeros) + " such elements");
   }
   return shape;
 }

@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "render/base/error.h"
+#include "render/base/json_text.h"
 
 namespace standin {
 namespace {
@@ -20,25 +21,10 @@ std::uint32_t word_at(std::span<const std::uint8_t> bytes, std::size_t offset) {
   return word;
 }
 
-// Brackets deeper than any real glTF would only serve to exhaust a stack.
-void check_depth(std::span<const std::uint8_t> text) {
-  constexpr int kDeepest = 200;
-  int depth = 0;
-  bool quoted = false;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const char c = static_cast<char>(text[i]);
-    if (quoted) {
-      if (c == '\\') ++i;
-      if (c == '"') quoted = false;
-    } else if (c == '"') {
-      quoted = true;
-    } else if (c == '{' || c == '[') {
-      if (++depth > kDeepest) broken("the glTF JSON is nested deeper than " + std::to_string(kDeepest));
-    } else if (c == '}' || c == ']') {
-      --depth;
-    }
-  }
-}
+constexpr int kDeepestJson = 200;  // than any real glTF
+// The vertex codec packs at most 64:1; a larger claim is not worth its memory.
+constexpr std::uint64_t kBestRatio = 128;
+constexpr std::uint64_t kSlack = 4096;  // small files have headers, too
 
 std::string at(const char* array, std::uint64_t index) {
   return std::string(array) + "[" + std::to_string(index) + "]";
@@ -123,15 +109,19 @@ void GltfFile::parse_container(std::span<const std::uint8_t> bytes) {
     const auto content = bytes.subspan(offset + 8, size);
     if (chunk == 0 && type != kJsonChunk) broken("the first chunk of the GLB is not JSON");
     if (chunk == 0) parse_json(content);
-    if (type == kBinaryChunk && binary_chunk_.empty()) binary_chunk_ = content;
+    if (type == kBinaryChunk && binary_chunk_.empty()) {
+      binary_chunk_ = content;
+      buffer_bytes_ = content.size();
+    }
     offset += 8 + (size + 3) / 4 * 4;
   }
   if (json_.is_null()) broken("the GLB has no JSON chunk");
 }
 
 void GltfFile::parse_json(std::span<const std::uint8_t> bytes) {
-  check_depth(bytes);
-  json_ = Json::parse(bytes.begin(), bytes.end(), nullptr, false);
+  const std::string_view text_of_json(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  if (nested_deeper(text_of_json, kDeepestJson)) broken("the glTF JSON is nested deeper than " + std::to_string(kDeepestJson));
+  json_ = Json::parse(text_of_json, nullptr, false);
   if (json_.is_discarded() || !json_.is_object()) broken("the glTF JSON cannot be parsed");
   const Json* asset = member(json_, "asset");
   const std::string version = asset == nullptr ? "" : text(*asset, "version");
@@ -155,8 +145,11 @@ std::span<const std::uint8_t> GltfFile::buffer(std::uint64_t index) {
   const std::string uri = text(buffer, "uri");
   std::span<const std::uint8_t> content = binary_chunk_;
   if (!uri.empty()) {
-    auto [place_in_cache, fresh] = external_buffers_.try_emplace(index);
-    if (fresh) place_in_cache->second = is_data_uri(uri) ? decode_data_uri(uri, place) : read_bytes(folder_.resolve_uri(uri));
+    auto [place_in_cache, fresh] = external_buffers_.try_emplace(is_data_uri(uri) ? "data:" + place : uri);
+    if (fresh) {
+      place_in_cache->second = is_data_uri(uri) ? decode_data_uri(uri, place) : read_bytes(folder_.resolve_uri(uri));
+      buffer_bytes_ += place_in_cache->second.size();
+    }
     content = place_in_cache->second;
   } else if (index != 0) {
     broken(place + " has no uri");
@@ -190,8 +183,6 @@ std::span<const std::uint8_t> GltfFile::view(std::uint64_t index) {
 }
 
 std::vector<std::uint8_t> GltfFile::decompressed(const Json& packed, const std::string& place) {
-  // The vertex codec packs at most 64:1; a larger claim is not worth its memory.
-  constexpr std::uint64_t kBestRatio = 128;
   const auto bytes = slice(packed, place);
   const std::uint64_t count = required_number(packed, "count", place);
   const std::uint64_t stride = required_number(packed, "byteStride", place);
@@ -201,6 +192,10 @@ std::vector<std::uint8_t> GltfFile::decompressed(const Json& packed, const std::
   }
   const auto n = static_cast<std::size_t>(count);
   const auto s = static_cast<std::size_t>(stride);
+  unpacked_bytes_ += n * s;
+  if (unpacked_bytes_ > kBestRatio * (buffer_bytes_ + kSlack))
+    broken(place + " and others unpack to " + std::to_string(unpacked_bytes_) + " bytes out of " + std::to_string(buffer_bytes_) +
+           ": some are named again and again");
   std::vector<std::uint8_t> result(n * s);
   const std::string mode = text(packed, "mode");
   int failed = -1;

@@ -78,8 +78,11 @@ class GltfFile {
   SceneFolder folder_;
   Json json_;
   std::span<const std::uint8_t> binary_chunk_;
-  std::map<std::uint64_t, std::vector<std::uint8_t>> external_buffers_;
+  std::map<std::string, std::vector<std::uint8_t>> external_buffers_;  // by URI; data URIs by their place
   std::map<std::uint64_t, std::vector<std::uint8_t>> decompressed_views_;
+  std::uint64_t buffer_bytes_ = 0;    // of all buffers opened
+  std::uint64_t unpacked_bytes_ = 0;  // of decompressed views
+  std::uint64_t zeros_ = 0;           // elements of accessors without bytes
 };
 
 }  // namespace standin

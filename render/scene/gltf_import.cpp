@@ -18,6 +18,8 @@ const std::set<std::string> kExtensionsRead{
     "EXT_mesh_gpu_instancing", "EXT_meshopt_compression", "EXT_texture_webp",      "KHR_materials_pbrSpecularGlossiness",
     "KHR_materials_unlit",     "KHR_mesh_quantization",   "KHR_texture_transform", "MSFT_lod"};
 
+constexpr std::uint64_t kMostObjects = 4'000'000;  // some 2 GB
+
 enum class Mode : std::uint64_t { kTriangles = 4, kStrip = 5, kFan = 6 };
 
 // Strips and fans as separate triangles of the same orientation.
@@ -164,10 +166,13 @@ class GltfReader {
     const std::vector<ObjectLevel> levels = levels_of(node, place);
     const Json* instancing = extension(node, "EXT_mesh_gpu_instancing");
     if (instancing == nullptr) {
+      count_objects(1, range, levels.size(), place);
       add_object(name, text(node, "name"), range, levels, file_from_node);
       return;
     }
-    const std::vector<Mat4> instances = node_from_instances(*instancing, place);
+    const InstanceAttributes attributes = instance_attributes(*instancing, place);
+    count_objects(attributes.count, range, levels.size(), place);
+    const std::vector<Mat4> instances = node_from_instances(attributes);
     for (std::size_t i = 0; i < instances.size(); ++i) {
       add_object(name + "[" + std::to_string(i) + "]", text(node, "name"), range, levels, file_from_node * instances[i]);
     }
@@ -210,28 +215,53 @@ class GltfReader {
     scene_.objects.push_back(std::move(object));
   }
 
-  std::vector<Mat4> node_from_instances(const Json& instancing, const std::string& place) {
-    const Json* attributes = member(instancing, "attributes");
-    if (attributes == nullptr) throw Failure(ErrorWord::kFileBroken, place + " has instances without attributes");
-    const auto accessor = [&](const char* name) { return whole_number(*attributes, name, place); };
+  struct InstanceAttributes {
     std::vector<glm::vec3> translations;
     std::vector<glm::vec4> rotations;
     std::vector<glm::vec3> scales;
-    if (const auto t = accessor("TRANSLATION")) translations = file_.vectors<glm::vec3>(*t);
-    if (const auto r = accessor("ROTATION")) rotations = file_.vectors<glm::vec4>(*r);
-    if (const auto s = accessor("SCALE")) scales = file_.vectors<glm::vec3>(*s);
-    const std::size_t count = std::max({translations.size(), rotations.size(), scales.size()});
-    const auto complete = [&](std::size_t size) { return size == 0 || size == count; };
-    if (!complete(translations.size()) || !complete(rotations.size()) || !complete(scales.size())) {
+    std::size_t count = 0;
+  };
+
+  InstanceAttributes instance_attributes(const Json& instancing, const std::string& place) {
+    const Json* attributes = member(instancing, "attributes");
+    if (attributes == nullptr) throw Failure(ErrorWord::kFileBroken, place + " has instances without attributes");
+    const auto accessor = [&](const char* name) { return whole_number(*attributes, name, place); };
+    InstanceAttributes read;
+    if (const auto t = accessor("TRANSLATION")) read.translations = file_.vectors<glm::vec3>(*t);
+    if (const auto r = accessor("ROTATION")) read.rotations = file_.vectors<glm::vec4>(*r);
+    if (const auto s = accessor("SCALE")) read.scales = file_.vectors<glm::vec3>(*s);
+    read.count = std::max({read.translations.size(), read.rotations.size(), read.scales.size()});
+    const auto complete = [&](std::size_t size) { return size == 0 || size == read.count; };
+    if (!complete(read.translations.size()) || !complete(read.rotations.size()) || !complete(read.scales.size())) {
       throw Failure(ErrorWord::kFileBroken, place + " has instance attributes of different lengths");
     }
+    return read;
+  }
+
+  static std::vector<Mat4> node_from_instances(const InstanceAttributes& read) {
     std::vector<Mat4> result;
-    for (std::size_t i = 0; i < count; ++i) {
-      const glm::vec4 r = rotations.empty() ? glm::vec4(0, 0, 0, 1) : rotations[i];
-      result.push_back(placed(translations.empty() ? Vec3(0.0) : Vec3(translations[i]), unit_quaternion(r.x, r.y, r.z, r.w),
-                              scales.empty() ? Vec3(1.0) : Vec3(scales[i])));
+    for (std::size_t i = 0; i < read.count; ++i) {
+      const glm::vec4 r = read.rotations.empty() ? glm::vec4(0, 0, 0, 1) : read.rotations[i];
+      result.push_back(placed(read.translations.empty() ? Vec3(0.0) : Vec3(read.translations[i]), unit_quaternion(r.x, r.y, r.z, r.w),
+                              read.scales.empty() ? Vec3(1.0) : Vec3(read.scales[i])));
     }
     return result;
+  }
+
+  // Before they are made: an instance may cost a file nothing.
+  void count_objects(std::uint64_t count, const PartRange& range, std::size_t levels, const std::string& place) {
+    std::uint64_t triangles = 0;
+    for (std::uint32_t p = 0; p < range.count; ++p) triangles += scene_.meshes[scene_.parts[range.first + p].mesh].triangle_count();
+    drawn_triangles_ += count * triangles;
+    objects_ += count;
+    levels_ += count * levels;
+    const auto refuse = [&](const std::string& what, std::uint64_t most) {
+      throw Failure(ErrorWord::kTooLarge, place + " brings the scene to " + what + ", more than the " + std::to_string(most) + " allowed");
+    };
+    if (drawn_triangles_ > import_.options.max_triangles)
+      refuse(std::to_string(drawn_triangles_) + " triangles", import_.options.max_triangles);
+    if (objects_ > kMostObjects) refuse(std::to_string(objects_) + " objects", kMostObjects);
+    if (levels_ > kMostObjects) refuse(std::to_string(levels_) + " levels of detail", kMostObjects);
   }
 
   // A glTF mesh's primitives as one range of parts, read once.
@@ -321,6 +351,7 @@ class GltfReader {
   std::map<std::uint64_t, PartRange> part_ranges_;              // by glTF mesh
   std::map<std::string, std::optional<std::uint32_t>> meshes_;  // by accessors; nothing where no triangle is left
   std::uint64_t read_triangles_ = 0;
+  std::uint64_t drawn_triangles_ = 0, objects_ = 0, levels_ = 0;
 };
 
 }  // namespace

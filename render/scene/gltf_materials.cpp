@@ -1,5 +1,6 @@
 #include "render/scene/gltf_materials.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "render/base/error.h"
@@ -10,11 +11,13 @@ namespace {
 
 using Kind = LoadNote::Kind;
 const Json kNothing = Json::object();
+constexpr double kAllTransparent = 2.0;  // a cutoff above 1 leaves nothing
 
+// Factors are in [0, 1] by the standard; others may not even be floats.
 glm::vec4 encoded_colour(const std::optional<std::vector<double>>& factor) {
   if (!factor) return glm::vec4(1.0F);
-  const auto& f = *factor;
-  return glm::vec4(glm::dvec4(srgb_encoded(f[0]), srgb_encoded(f[1]), srgb_encoded(f[2]), f[3]));
+  const glm::dvec4 f = glm::clamp(glm::dvec4((*factor)[0], (*factor)[1], (*factor)[2], (*factor)[3]), 0.0, 1.0);
+  return glm::vec4(glm::dvec4(srgb_encoded(f.r), srgb_encoded(f.g), srgb_encoded(f.b), f.a));
 }
 
 UvTransform read_uv_transform(const Json& json, const std::string& place) {
@@ -98,7 +101,8 @@ void GltfMaterials::read_alpha(const Json& json, const std::string& place, Mater
   const std::string mode = text(json, "alphaMode", "OPAQUE");
   if (mode == "OPAQUE") return;
   material.alpha_mode = AlphaMode::kMask;
-  if (mode == "MASK") material.alpha_cutoff = static_cast<float>(real_number(json, "alphaCutoff", 0.5, place));
+  if (mode == "MASK")
+    material.alpha_cutoff = static_cast<float>(std::clamp(real_number(json, "alphaCutoff", 0.5, place), 0.0, kAllTransparent));
   add_note(scene_, Kind::kChosen, "materials", mode == "MASK" ? 0 : 1, "blended ones are drawn as a mask at alpha 0.5");
 }
 

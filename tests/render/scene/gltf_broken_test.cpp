@@ -1,6 +1,7 @@
 // Hostile and damaged glTF: each guard must be the one that fires.
 
 #include <gtest/gtest.h>
+#include <meshoptimizer.h>
 
 #include <cmath>
 #include <limits>
@@ -145,6 +146,14 @@ TEST(GltfBroken, UrisStayInTheFolder) {
   }
 }
 
+TEST(GltfBroken, ANameTooLongForAnyFileIsRefused) {
+  for (const std::size_t length : {300U, 10'000U}) {
+    GlbMaker maker = square_glb();
+    maker.json["images"] = GlbMaker::Json::array({{{"uri", std::string(length, 'n') + ".png"}}});
+    EXPECT_EQ(failure_of(maker, "names no file"), ErrorWord::kUriForbidden) << length;
+  }
+}
+
 TEST(GltfBroken, LinksMayNotLeadOut) {
   const TemporaryFolder folder;
   GlbMaker maker = square_glb();
@@ -203,6 +212,70 @@ TEST(GltfBroken, TooManyTexels) {
   EXPECT_EQ(load_scene(folder.write("scene.glb", maker.glb()), options).textures.size(), 1U);
   options.max_texels = 7;
   EXPECT_EQ(failure_of(maker, "8 texels", options), ErrorWord::kTooLarge);
+}
+
+// An accessor without bytes is a line of text: what it makes of one mesh must be counted before it is made.
+TEST(GltfBroken, InstancesAreCountedBeforeTheyAreMade) {
+  GlbMaker maker = square_glb();
+  maker.json["accessors"].push_back({{"componentType", 5126}, {"count", 1 << 24}, {"type", "VEC3"}});
+  maker.json["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"]["TRANSLATION"] = maker.json["accessors"].size() - 1;
+  LoadOptions options;
+  options.max_triangles = 1 << 20;
+  EXPECT_EQ(failure_of(maker, "33554432 triangles", options), ErrorWord::kTooLarge);
+  options.max_triangles = std::uint64_t{1} << 40;
+  EXPECT_EQ(failure_of(maker, "16777216 objects", options), ErrorWord::kTooLarge);
+}
+
+TEST(GltfBroken, LevelsOfInstancesAreCounted) {
+  GlbMaker maker = square_glb();
+  maker.json["accessors"].push_back({{"componentType", 5126}, {"count", 100'000}, {"type", "VEC3"}});
+  maker.json["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"]["TRANSLATION"] = maker.json["accessors"].size() - 1;
+  maker.json["nodes"].push_back({{"mesh", 0}});
+  maker.json["nodes"][0]["extensions"]["MSFT_lod"]["ids"] = std::vector<int>(1000, 1);
+  EXPECT_EQ(failure_of(maker, "100000000 levels of detail"), ErrorWord::kTooLarge);
+}
+
+TEST(GltfBroken, ElementsWithoutBytesAreLimitedInTheWholeFile) {
+  GlbMaker maker = square_glb();
+  for (int i = 0; i < 4; ++i) {
+    maker.json["accessors"].push_back({{"componentType", 5126}, {"count", (1 << 23) + 1}, {"type", "VEC3"}});
+    GlbMaker::Json primitive = maker.primitive();
+    primitive["attributes"]["POSITION"] = maker.json["accessors"].size() - 1;
+    maker.json["meshes"][0]["primitives"].push_back(primitive);
+  }
+  EXPECT_EQ(failure_of(maker, "no bytes"), ErrorWord::kFileBroken);
+}
+
+// Many buffer views may name the same packed bytes.
+TEST(GltfBroken, WhatTheSameBytesUnpackToIsLimited) {
+  const std::vector<float> positions(3 * 4096, 1.0F);
+  std::vector<unsigned char> packed(meshopt_encodeVertexBufferBound(4096, 12));
+  packed.resize(meshopt_encodeVertexBuffer(packed.data(), packed.size(), positions.data(), 4096, 12));
+  GlbMaker maker = square_glb();
+  GlbMaker::Json view = maker.json["bufferViews"][maker.view(packed.data(), packed.size())];
+  view.update({{"count", 4096}, {"byteStride", 12}, {"mode", "ATTRIBUTES"}});
+  for (int i = 0; i < 200; ++i) {
+    maker.json["bufferViews"].push_back({{"buffer", 0}, {"byteLength", 4096 * 12}, {"extensions", {{"EXT_meshopt_compression", view}}}});
+    maker.json["accessors"].push_back(
+        {{"bufferView", maker.json["bufferViews"].size() - 1}, {"componentType", 5126}, {"count", 4096}, {"type", "VEC3"}});
+    GlbMaker::Json primitive = maker.primitive();
+    primitive["attributes"]["POSITION"] = maker.json["accessors"].size() - 1;
+    maker.json["meshes"][0]["primitives"].push_back(primitive);
+  }
+  EXPECT_EQ(failure_of(maker, "unpack"), ErrorWord::kFileBroken);
+}
+
+TEST(GltfBroken, ColoursStayWithinTheirRange) {
+  GlbMaker maker = square_glb();
+  maker.json["materials"] = GlbMaker::Json::array(
+      {{{"alphaMode", "MASK"}, {"alphaCutoff", 1e300}, {"pbrMetallicRoughness", {{"baseColorFactor", {1e300, -1e300, 0.5, 7.0}}}}}});
+  maker.primitive()["material"] = 0;
+  const TemporaryFolder folder;
+  const Material material = load_scene(folder.write("scene.glb", maker.glb())).materials.at(0);
+  EXPECT_EQ(material.base_colour.r, 1.0F);
+  EXPECT_EQ(material.base_colour.g, 0.0F);
+  EXPECT_EQ(material.base_colour.a, 1.0F);
+  EXPECT_TRUE(std::isfinite(material.alpha_cutoff));
 }
 
 TEST(GltfBroken, BrokenImageIsANoteOnly) {
