@@ -3,12 +3,14 @@
 //     node tests/bench/service.mjs kill   BINARY SCENE [JOBS] [KILLS] [SEED]
 //     node tests/bench/service.mjs cancel BINARY SCENE [CANCELS] [SEED]
 //     node tests/bench/service.mjs load   BINARY SCENE [POLLERS] [STREAMS] [SECONDS]
-//     node tests/bench/service.mjs hostile BINARY SCENE [REQUESTS] [SEED]
+//     node tests/bench/service.mjs hostile BINARY SCENE [REQUESTS] [SEED] [WORKER_MEMORY_GB]
 //
 // kill: server or worker, in turn by chance, at random moments over a queue of jobs: none lost, none doubled, no orphan, the bytes of an
 // undisturbed run. cancel: at random moments: how long it takes, what is left. load: clients that poll and listen while a job runs: errors, the
 // server's memory and processor time, and the 99th percentile of GET /v1/jobs/{id} beside that of an idle server. hostile: requests that are
-// malformed as HTTP, as JSON, as a body of ours, or as an upload: no answer above 499 but those that the routes name, and the server lives. Exits with 1 where a promise is broken.
+// malformed as HTTP, as JSON, as a body of ours, or as an upload, and surveys of such uploads: no answer above 499 but those that the routes
+// name, no worker that dies, and the server lives until it is asked to end. Of a build with sanitizers (which leave no sense to
+// WORKER_MEMORY_GB: 0), whatever they find ends a process: a promise is broken then. Exits with 1 where one is.
 import { spawn } from "node:child_process";
 import { cpSync, existsSync, mkdtempSync, mkdirSync, readFileSync, readdirSync, rmSync } from "node:fs";
 import { Agent, request } from "node:http";
@@ -42,7 +44,7 @@ const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
 
 let child;
 async function serve(...more) {
-  child = spawn(binary, ["serve", "--data", join(folder, "data"), "--listen", "127.0.0.1:0", "--scenes", scenes, "--targets", join(source, "configs/targets"), "--attempts", "1000", ...more], { stdio: ["ignore", "pipe", "inherit"] });
+  child = spawn(binary, ["serve", "--data", join(folder, "data"), "--listen", "127.0.0.1:0", "--scenes", scenes, "--targets", join(source, "configs/targets"), ...more], { stdio: ["ignore", "pipe", "inherit"] });
   const own = child;
   children.add(own);
   own.once("exit", () => children.delete(own));
@@ -88,7 +90,8 @@ async function artifacts(url, id) {
 
 async function kill(jobs = 20, kills = 50, seed = 1) {
   const chance = random(seed);
-  let url = await serve();
+  const attempts = ["--attempts", "1000"];
+  let url = await serve(...attempts);
   const ids = [];
   for (let i = 0; i < jobs; ++i) ids.push((await post(`${url}/v1/jobs`, place(i + 1))).id);
   const done = { server: 0, worker: 0 };
@@ -105,7 +108,7 @@ async function kill(jobs = 20, kills = 50, seed = 1) {
       ++done.server;
       await sleep(300);
       orphans += workers().length;
-      url = await serve();
+      url = await serve(...attempts);
     }
     if ((await Promise.all(ids.map((id) => get(`${url}/v1/jobs/${id}`)))).every(ended)) break;
   }
@@ -242,6 +245,7 @@ class Hostile {
   constructor(seed, sceneBytes) {
     this.chance = random(seed);
     this.sceneBytes = sceneBytes;
+    this.uploads = []; // ids of those that were taken
   }
   below(n) {
     return Math.floor(this.chance() * n);
@@ -284,8 +288,8 @@ class Hostile {
       headers.push(this.pick(["Content-Length: -1", "Content-Length: 5", "Content-Length: 99999999999999999999", "Transfer-Encoding: chunked", "Transfer-Encoding: gzip", "Range: bytes=5-1", "Expect: 100-continue", "Content-Type: application/json", "Content-Type: application/octet-stream", "Origin: null", `Idempotency-Key: ${"k".repeat(this.below(400))}`, "Last-Event-ID: -9", `X-${this.text(10)}`, "Connection: close, keep-alive"]));
     return Buffer.from(`${method} ${this.path()} ${this.pick(["HTTP/1.1", "HTTP/1.0", "HTTP/9.9", ""])}\r\n${headers.join("\r\n")}\r\n\r\n${this.text(60)}`, "latin1");
   }
-  json() {
-    const body = Buffer.from(this.body());
+  json(text = this.body()) {
+    const body = Buffer.from(text);
     return Buffer.concat([Buffer.from(`POST /v1/jobs HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\nConnection: close\r\nContent-Length: ${body.length}\r\n\r\n`), body]);
   }
   upload() {
@@ -293,25 +297,40 @@ class Hostile {
     for (let i = this.below(50); i > 0; --i) if (bytes.length > 0) bytes[this.below(Math.min(bytes.length, 4000))] = this.below(256);
     return Buffer.concat([Buffer.from(`POST /v1/uploads?name=${encodeURIComponent(this.text(12))}.glb HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/octet-stream\r\nConnection: close\r\nContent-Length: ${bytes.length + this.pick([0, 0, 0, 1000])}\r\n\r\n`), bytes]);
   }
+  /** A job whose scene is one of the broken uploads. */
+  survey() {
+    const { spec, target } = place(1);
+    return this.json(JSON.stringify({ kind: "survey", scene: { upload: this.pick(this.uploads) ?? "none" }, target, spec }));
+  }
   next() {
-    return this.pick([() => this.http(), () => this.json(), () => this.json(), () => this.upload()])();
+    return this.pick([() => this.http(), () => this.json(), () => this.json(), () => this.upload(), () => this.survey()])();
+  }
+  hear(answer) {
+    if (answer.startsWith("HTTP/1.1 201")) this.uploads.push(JSON.parse(answer.slice(answer.indexOf("\r\n\r\n"))).id);
   }
 }
 
-async function hostile(requests = 1000, seed = 1) {
-  const url = await serve("--queue", "5", "--deadline-minutes", "0.2");
+async function hostile(requests = 1000, seed = 1, memory_gb = 8) {
+  const url = await serve("--queue", "5", "--deadline-minutes", "0.2", "--attempts", "2", "--worker-memory-gb", String(memory_gb));
   const strange = new Hostile(seed, readFileSync(scene));
   const statuses = {};
   for (let i = 0; i < requests; ++i) {
-    const status = (await exchange(url, strange.next())).match(/^HTTP\/1\.[01] (?!100)(\d+)|\r\n\r\nHTTP\/1\.[01] (\d+)/);
+    const answer = await exchange(url, strange.next());
+    strange.hear(answer);
+    const status = answer.match(/^HTTP\/1\.[01] (?!100)(\d+)|\r\n\r\nHTTP\/1\.[01] (\d+)/);
     const said = status ? (status[1] ?? status[2]) : "none";
     statuses[said] = (statuses[said] ?? 0) + 1;
     if (child.exitCode !== null || child.signalCode !== null) break;
   }
   promise(child.exitCode === null && child.signalCode === null && (await get(`${url}/healthz`)).status === "ok", `${requests} hostile requests (seed ${seed}); the server lives`);
   promise(Object.keys(statuses).every((status) => status < "500" || ["503", "505", "507", "none"].includes(status)), `answers by status: ${JSON.stringify(statuses)}`);
-  for (const { id, state } of (await get(`${url}/v1/jobs?limit=200`)).jobs) if (!ended({ state })) await post(`${url}/v1/jobs/${id}/cancel`, {});
+  let jobs;
+  while (!(jobs = (await get(`${url}/v1/jobs?limit=200`)).jobs).every(ended)) await sleep(200);
+  const ends = {};
+  for (const { state, error } of jobs) ends[error?.word ?? state] = (ends[error?.word ?? state] ?? 0) + 1;
+  promise(!("worker_lost" in ends) && !("internal" in ends), `${jobs.length} jobs by their end: ${JSON.stringify(ends)}`);
   await killServer("SIGTERM");
+  promise(child.exitCode === 0, `the server ends with ${child.exitCode ?? child.signalCode} when it is asked to`);
   promise(workers().length === 0, "no worker is left");
 }
 
