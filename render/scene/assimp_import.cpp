@@ -11,6 +11,7 @@
 #include <assimp/scene.h>
 #include <meshoptimizer.h>
 
+#include <algorithm>
 #include <assimp/Importer.hpp>
 #include <cmath>
 #include <map>
@@ -93,6 +94,15 @@ void weld(Mesh& mesh) {
   compact(mesh.uvs);
 }
 
+// Assimp takes a face without corners for a polygon, and its triangulation ends the process where no other face is one.
+void take_empty_faces_for_nothing(const aiScene& scene) {
+  for (aiMesh* mesh : std::span(scene.mMeshes, scene.mNumMeshes)) {
+    const std::span faces(mesh->mFaces, mesh->mNumFaces);
+    const bool polygons = std::ranges::any_of(faces, [](const aiFace& face) { return face.mNumIndices > 3; });
+    if (!polygons) mesh->mPrimitiveTypes &= ~static_cast<unsigned int>(aiPrimitiveType_POLYGON);
+  }
+}
+
 class AssimpReader {
  public:
   explicit AssimpReader(Import& import) : import_(import), scene_(import.scene) {}
@@ -100,7 +110,11 @@ class AssimpReader {
   void read(const fs::path& file) {
     auto* files = new ConfinedFiles(import_.folder);
     importer_.SetIOHandler(files);  // takes ownership
-    from_ = importer_.ReadFile(fs::absolute(file).string(), aiProcess_Triangulate);
+    from_ = importer_.ReadFile(fs::absolute(file).string(), 0);
+    if (from_ != nullptr) {
+      take_empty_faces_for_nothing(*from_);
+      from_ = importer_.ApplyPostProcessing(aiProcess_Triangulate);
+    }
     if (!files->forbidden().empty()) {
       throw Failure(ErrorWord::kUriForbidden, "the reference to " + files->forbidden() + " leads out of " + import_.folder.path().string());
     }
