@@ -15,6 +15,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   LoadOptions options;
   options.split_triangles = 20;
   options.max_triangles = 100'000;
+  options.max_texels = 1 << 20;
   Scene scene;
   if (fuzz::read_or_refused([&] { scene = load_scene(file, options); })) fuzz::check_scene(scene);
   return 0;

@@ -47,11 +47,11 @@ class Bench {
 
  private:
   ApiHooks hooks() {
-    return {none_, none_, [] {}, [] { return 0.0; }, [] { return 0U; }, [] { return std::uint64_t{0}; }, [](const std::string&) {}};
+    return {none_, none_, [] {}, [] { return 0.0; }, [] { return std::uint64_t{0}; }, [](const std::string&) {}};
   }
   const fs::path folder_ = input_folder().path() / "service";
   BlobStore blobs_{folder_ / "blobs"};
-  JobStore jobs_{folder_ / "jobs.sqlite", 10};
+  JobStore jobs_{folder_ / "jobs.sqlite", {.all = 10, .of_one_owner = 8}};
   Catalogue none_{"", blobs_, [](const std::string&) {}};
   Api api_{{}, jobs_, blobs_, {}, hooks()};
   std::string upload_, done_, waiting_;
