@@ -94,12 +94,13 @@ void weld(Mesh& mesh) {
   compact(mesh.uvs);
 }
 
-// Assimp takes a face without corners for a polygon, and its triangulation ends the process where no other face is one.
+// Assimp takes a face without corners for a polygon, and its triangulation ends the process where no face is one: it is told to let such
+// meshes be.
 void take_empty_faces_for_nothing(const aiScene& scene) {
   for (aiMesh* mesh : std::span(scene.mMeshes, scene.mNumMeshes)) {
     const std::span faces(mesh->mFaces, mesh->mNumFaces);
     const bool polygons = std::ranges::any_of(faces, [](const aiFace& face) { return face.mNumIndices > 3; });
-    if (!polygons) mesh->mPrimitiveTypes &= ~static_cast<unsigned int>(aiPrimitiveType_POLYGON);
+    if (!polygons) mesh->mPrimitiveTypes = aiPrimitiveType_TRIANGLE;
   }
 }
 

@@ -73,10 +73,13 @@ bool drawable(const Object& object) {
   return object.area_m2 > 0.0 && std::isfinite(object.area_m2) && std::isfinite(extent.x + extent.y + extent.z);
 }
 
-void drop_undrawable(Scene& scene) {
-  const std::size_t before = scene.objects.size();
-  std::erase_if(scene.objects, [](const Object& object) { return !drawable(object); });
-  add_note(scene, Kind::kDropped, "objects", before - scene.objects.size(), "transform flattens them to nothing or is not finite");
+// Returns how many there were; the scene has no bounds of theirs.
+std::size_t drop_undrawable(Scene& scene) {
+  const std::size_t dropped = std::erase_if(scene.objects, [](const Object& object) { return !drawable(object); });
+  add_note(scene, Kind::kDropped, "objects", dropped, "transform flattens them to nothing or is not finite");
+  if (dropped > 0) scene.bounds = Box();
+  for (const Object& object : scene.objects) scene.bounds.extend(object.bounds);
+  return dropped;
 }
 
 void check_not_empty(const Scene& scene, const fs::path& file) {
@@ -105,12 +108,15 @@ Scene load_scene(const fs::path& file, const LoadOptions& options) {
   recentre(scene);
   place(import);
   update_derived(scene);
-  drop_undrawable(scene);
+  (void)drop_undrawable(scene);
   check_not_empty(scene, file);
   check_size(scene, options);
   const bool split = split_objects(scene, options);
   prune(scene);
-  if (split) update_derived(scene);
+  if (split) {
+    update_derived(scene);
+    if (drop_undrawable(scene) > 0) prune(scene);  // pieces may be flat, though the whole is not
+  }
   scene.name = file.filename().string();
   scene.sha256 = digest.get();
   return std::move(import.scene);

@@ -97,6 +97,11 @@ TEST(Formats, ASurfaceWithoutCornersIsNone) {
       "AC3Db\nMATERIAL \"m\" rgb 1 1 1 amb 0 0 0 emis 0 0 0 spec 0 0 0 shi 0 trans 0\nOBJECT world\nkids 1\nOBJECT poly\nnumvert 3\n"
       "0 0 0\n1 0 0\n0 1 0\nnumsurf 2\nSURF 0x20\nmat 0\nrefs 0\nSURF 0x20\nmat 0\nrefs 3\n0 0 0\n1 1 0\n2 0 1\nkids 0\n"));
   EXPECT_EQ(scene.triangle_count(), 1U);
+  EXPECT_EQ(load_failure(folder.write("none.ac",
+                                      "AC3Db\nMATERIAL \"m\" rgb 1 1 1 amb 0 0 0 emis 0 0 0 spec 0 0 0 shi 0 trans 0\nOBJECT world\n"
+                                      "kids 1\nOBJECT poly\nnumvert 1\n0 0 0\nnumsurf 1\nSURF 0x20\nmat 0\nrefs 3\n0 0 0\n1 1 0\n2 0 1\n"
+                                      "kids 0\n")),
+            ErrorWord::kSceneEmpty);
 }
 
 TEST(Formats, NoSceneAtAll) {

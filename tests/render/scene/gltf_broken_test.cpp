@@ -197,6 +197,30 @@ TEST(GltfBroken, NothingLeftIsRefusedWithTheReason) {
   EXPECT_EQ(failure_of(maker, "flattens"), ErrorWord::kSceneEmpty);
 }
 
+TEST(GltfBroken, WhatIsDroppedDoesNotStretchTheScene) {
+  GlbMaker maker = square_glb();
+  maker.json["nodes"].push_back({{"mesh", 0}, {"scale", {1e200, 1e200, 1}}});
+  maker.json["scenes"][0]["nodes"] = {0, 1};
+  const TemporaryFolder folder;
+  const Scene scene = load_scene(folder.write("scene.glb", maker.glb()));
+  EXPECT_EQ(noted(scene, Kind::kDropped, "objects"), 1U);
+  EXPECT_EQ(scene.bounds.max, Vec3(1.0, 1.0, 0.0));
+}
+
+// A square that faces z and one that faces x, which the node flattens.
+TEST(GltfBroken, PiecesThatAreFlattenedToNothingAreDropped) {
+  GlbMaker maker;
+  maker.show({0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, 9, 0, 0, 9, 0, 1, 9, 1, 1, 9, 1, 0}, {0, 1, 2, 0, 2, 3, 4, 5, 6, 4, 6, 7});
+  maker.json["nodes"][0]["scale"] = {1, 1, 0};
+  LoadOptions options;
+  options.split_triangles = 2;
+  const TemporaryFolder folder;
+  const Scene scene = load_scene(folder.write("scene.glb", maker.glb()), options);
+  ASSERT_EQ(scene.objects.size(), 1U);
+  EXPECT_EQ(scene.objects[0].area_m2, 1.0);
+  EXPECT_EQ(scene.meshes.size(), 1U);
+}
+
 TEST(GltfBroken, TooManyTriangles) {
   LoadOptions options;
   options.max_triangles = 1;
