@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <concepts>
 #include <glm/trigonometric.hpp>
+#include <limits>
 #include <map>
 #include <optional>
 #include <tuple>
@@ -13,6 +16,32 @@ namespace standin {
 namespace {
 
 using nlohmann::json;
+
+// A number of the file as an integer: whole, and within the integer's range, since a cast of any other means nothing.
+class Whole {
+ public:
+  explicit Whole(const json& value) : value_(value) {}
+  template <std::integral Integer>
+  operator Integer() const {
+    constexpr double kExact = 9007199254740992.0;  // up to here doubles count
+    const double least = static_cast<double>(std::numeric_limits<Integer>::min());
+    const double most = std::min(static_cast<double>(std::numeric_limits<Integer>::max()), kExact);
+    const double number = value_.get<double>();
+    if (number != std::floor(number) || number < least || number > most)
+      throw Failure(ErrorWord::kFileBroken, value_.dump() + " is not a whole number that may stand there");
+    return value_.get<Integer>();
+  }
+
+ private:
+  const json& value_;
+};
+
+std::vector<std::uint32_t> to_ids(const json& list) {
+  std::vector<std::uint32_t> ids;
+  if (!list.is_array()) throw Failure(ErrorWord::kFileBroken, list.dump() + " is not a list of ids");
+  for (const json& id : list) ids.push_back(Whole(id));
+  return ids;
+}
 
 json to_json_array(const Vec3& v) {
   return {v.x, v.y, v.z};
@@ -97,8 +126,8 @@ ViewSpace to_view_space(const json& value) {
   const json& root = value.at("root");
   space.root_min = to_vec3(root.at("min"));
   space.root_side_m = root.at("side");
-  space.leaf_level = root.at("leaf_level");
-  space.finest_level = root.at("finest_level");
+  space.leaf_level = Whole(root.at("leaf_level"));
+  space.finest_level = Whole(root.at("finest_level"));
   return space;
 }
 
@@ -118,9 +147,10 @@ json cells_json(const Placement& placement) {
 void read_cells(const json& cells, Placement& placement) {
   std::map<std::vector<std::uint32_t>, std::int32_t> known;
   for (const auto& entry : cells) {
-    PlacementCell cell{{entry.at("level"), entry.at("index")}, to_box(entry), -1};
+    const json& index = entry.at("index");
+    PlacementCell cell{{Whole(entry.at("level")), {Whole(index.at(0)), Whole(index.at(1)), Whole(index.at(2))}}, to_box(entry), -1};
     if (!entry.at("visible_objects").is_null()) {
-      auto objects = entry.at("visible_objects").get<std::vector<std::uint32_t>>();
+      auto objects = to_ids(entry.at("visible_objects"));
       const auto [position, is_new] = known.try_emplace(objects, static_cast<std::int32_t>(placement.visible_sets.size()));
       if (is_new) placement.visible_sets.push_back(std::move(objects));
       cell.visible_set = position->second;
@@ -146,7 +176,8 @@ DirectionInterval to_interval(const json& value) {
   const std::string name = value.at("face");
   for (int i = 0; i < kFaceCount; ++i) {
     const auto face = static_cast<Face>(i);
-    if (face_frame(face).name == name) return {face, value.at("level"), value.at("index").at(0), value.at("index").at(1)};
+    if (face_frame(face).name == name)
+      return {face, Whole(value.at("level")), Whole(value.at("index").at(0)), Whole(value.at("index").at(1))};
   }
   throw Failure(ErrorWord::kFileBroken, "interval face \"" + name + "\" is not one of +x -x +y -y +z -z");
 }
@@ -164,8 +195,8 @@ json cpvs_json(const std::vector<PlacementCpv>& cpvs) {
 }
 
 PlacementCpv to_cpv(const json& value) {
-  return {value.at("cell"),           value.at("interval"), value.at("bound_before_ms"),
-          value.at("bound_after_ms"), value.at("solved"),   value.at("impostors")};
+  return {Whole(value.at("cell")),    Whole(value.at("interval")), value.at("bound_before_ms"),
+          value.at("bound_after_ms"), value.at("solved"),          to_ids(value.at("impostors"))};
 }
 
 json view_cell_json(const ViewCell& cell) {
@@ -222,7 +253,7 @@ PlacementImpostor to_impostor(const json& value) {
   PlacementImpostor impostor;
   impostor.technique = value.at("technique");
   impostor.guarantee = value.at("guarantee");
-  impostor.objects = value.at("objects").get<std::vector<std::uint32_t>>();
+  impostor.objects = to_ids(value.at("objects"));
   impostor.view_cell = to_view_cell(value.at("view_cell"));
   const json& plane = value.at("image_plane");
   impostor.frame = {to_vec3(value.at("reference_viewpoint")),
@@ -231,13 +262,13 @@ PlacementImpostor to_impostor(const json& value) {
                     to_vec3(plane.at("up")),
                     to_vec2(plane.at("slope_min")),
                     to_vec2(plane.at("slope_step")),
-                    value.at("resolution").at(0),
-                    value.at("resolution").at(1)};
+                    Whole(value.at("resolution").at(0)),
+                    Whole(value.at("resolution").at(1))};
   for (const auto& layer : value.at("layers")) impostor.layers.push_back({layer.at("distance"), layer.at("near"), layer.at("far")});
-  impostor.quads = value.at("quads");
-  impostor.texels = value.at("texels");
-  impostor.texture_bytes = value.at("texture_bytes");
-  impostor.geometry_bytes = value.at("geometry_bytes");
+  impostor.quads = Whole(value.at("quads"));
+  impostor.texels = Whole(value.at("texels"));
+  impostor.texture_bytes = Whole(value.at("texture_bytes"));
+  impostor.geometry_bytes = Whole(value.at("geometry_bytes"));
   impostor.time_bound_ms = value.at("time_bound_ms");
   return impostor;
 }
@@ -287,13 +318,13 @@ void read_lods(const json& lods, const json& objects, PlacementFile& file) {
   if (lods.is_null()) return;
   file.lods_sha256 = lods.at("asset").at("sha256");
   for (const auto& entry : lods.at("objects")) {
-    PlacementLevels levels{entry.at("object"), {}, {}, to_matrix(entry.at("world_from_object"))};
+    PlacementLevels levels{Whole(entry.at("object")), {}, {}, to_matrix(entry.at("world_from_object"))};
     if (levels.object >= objects.size()) throw Failure(ErrorWord::kFileBroken, "lods.objects names an object that does not exist");
     levels.bounds = to_box(objects.at(levels.object).at("bounds"));
     for (const auto& level : entry.at("levels")) {
       const json& error = level.at("error");
       file.lods.push_back({levels.object, level.at("gltf_node"), level.at("least_distance"), error.is_null() ? -1.0 : error.get<double>(),
-                           level.at("triangles")});
+                           Whole(level.at("triangles"))});
       levels.least_distance_m.push_back(level.at("least_distance"));
     }
     const bool in_order = file.placement.levels.empty() || file.placement.levels.back().object < levels.object;
@@ -334,10 +365,10 @@ PlacementFile parse(const json& object) {
   file.coverage = object.at("target").at("coverage");
   const json& camera = object.at("camera");
   file.camera.fov_y_rad = glm::radians(camera.at("fov_y_deg").get<double>());
-  file.camera.width = camera.at("width");
-  file.camera.height = camera.at("height");
+  file.camera.width = Whole(camera.at("width"));
+  file.camera.height = Whole(camera.at("height"));
   file.view_space = to_view_space(object.at("view_space"));
-  file.atlas_pages = object.at("atlas_pages");
+  file.atlas_pages = Whole(object.at("atlas_pages"));
   Placement& placement = file.placement;
   read_cells(object.at("cells"), placement);
   for (const auto& entry : object.at("intervals")) placement.intervals.push_back(to_interval(entry));

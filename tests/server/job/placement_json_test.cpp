@@ -141,6 +141,17 @@ TEST(PlacementJson, BrokenFilesAreRefused) {
                                                                                 {"/intervals/0/face", "up"},
                                                                                 {"/view_space/kind", "swim"},
                                                                                 {"/cells", 3},
+                                                                                {"/cells/0/level", 1e18},
+                                                                                {"/cells/0/index/2", -1e18},
+                                                                                {"/cells/0/visible_objects/0", 0.5},
+                                                                                {"/cells/0/visible_objects", "x"},
+                                                                                {"/intervals/0/level", 1.5},
+                                                                                {"/cpvs/0/cell", -1},
+                                                                                {"/cpvs/0/interval", 4294967296U},
+                                                                                {"/impostors/0/quads", 1e300},
+                                                                                {"/impostors/0/texture_bytes", 1e17},
+                                                                                {"/camera/width", 1e10},
+                                                                                {"/view_space/root/leaf_level", 1e10},
                                                                                 {"/impostors/0/layers/0/near", "x"}}) {
     json bad = good;
     bad[json::json_pointer(pointer)] = value;
