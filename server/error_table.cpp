@@ -32,6 +32,7 @@ constexpr std::array kRows = {
     ErrorRow{ErrorWord::kQueueFull, "queue_full", 3, 429},
     ErrorRow{ErrorWord::kBusy, "busy", 3, 503},
     ErrorRow{ErrorWord::kDiskFull, "disk_full", 3, 507},
+    ErrorRow{ErrorWord::kQuotaFull, "quota_full", 2, 507},
     ErrorRow{ErrorWord::kDeadlinePassed, "deadline_passed", 3, 504},
     ErrorRow{ErrorWord::kWorkerLost, "worker_lost", 3, 500},
     ErrorRow{ErrorWord::kServerUnreachable, "server_unreachable", 3, 502},

@@ -77,11 +77,12 @@ JobOutcome run_survey(const JobFiles& files, const JobSpec& spec, const WorkBudg
   Surveyed job;
   load_job(files, spec, clock, budget, job);
   survey_scene(job, spec, nullptr, clock, budget);
+  const auto causes = clock.run("causes", [&] { return causes_per_cell(job.world, job.reach.subdivision, job.target.model, budget); });
   JobOutcome outcome;
   outcome.metrics = common_metrics(job, clock);
   close_cache(job.cache.get(), spec, outcome.metrics);
-  outcome.metrics["causes"] = causes_json(job.world, job.reach.subdivision, job.target.model);
-  outcome.metrics["heat_map"] = heat_map_json(job.world, job.reach.subdivision, nullptr, job.target.model);
+  outcome.metrics["causes"] = causes_json(job.world, causes);
+  outcome.metrics["heat_map"] = heat_map_json(job.world, job.reach.subdivision, causes, nullptr, job.target.model);
   outcome.metrics["curves"] = {{"estimator", estimator_curve(job.target)}};
   if (spec.budget_ms > 0.0) outcome.metrics["budget_ms"] = spec.budget_ms;
   if (!folder) return outcome;
@@ -105,6 +106,7 @@ JobOutcome run_place(const JobFiles& files, const JobSpec& spec, const WorkBudge
   place_at_budget(job, spec, placed, nullptr, clock, budget);
   const json curves =
       clock.run("curves", [&] { return curves_json(job, spec, placed.subdivision, placed.selected, placed.set.impostors, clock, budget); });
+  const auto causes = clock.run("causes", [&] { return causes_per_cell(job.world, placed.subdivision, job.target.model, budget); });
   json gpu_compression = clock.run("gpu_compression", [&] { return gpu_compression_json(placed.set.pages, job.world.threads, budget); });
   const VerifyResult verified = clock.run("verify", [&] { return verify(job, placed, spec, budget); });
 
@@ -126,8 +128,8 @@ JobOutcome run_place(const JobFiles& files, const JobSpec& spec, const WorkBudge
   metrics["curves"] = curves;
   metrics["verify"] = verify_json(verified);
   metrics["image"] = image_json(verified);
-  metrics["heat_map"] = heat_map_json(job.world, placed.subdivision, &placed.placement, job.target.model);
-  metrics["causes"] = causes_json(job.world, placed.subdivision, job.target.model);
+  metrics["heat_map"] = heat_map_json(job.world, placed.subdivision, causes, &placed.placement, job.target.model);
+  metrics["causes"] = causes_json(job.world, causes);
   metrics.update(
       unsolved_json(job.world, placed.subdivision, placed.placement, placed.selected.selection, job.target.model, spec.budget_ms));
   folder.write(kInputsFile, inputs_json(files));

@@ -38,6 +38,7 @@ enum class ErrorWord {
   kQueueFull,           // as many jobs wait as may
   kBusy,                // as many event streams or uploads are open as may
   kDiskFull,            // the quota of the data folder
+  kQuotaFull,           // an owner's part of it
   kDeadlinePassed,      // a job took longer than it may
   kWorkerLost,          // a worker process ended without a word
   kServerUnreachable,   // seen by a client

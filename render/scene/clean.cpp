@@ -143,10 +143,9 @@ std::uint64_t repair_uvs(Mesh& mesh) {
 std::int32_t add_texture(Import& import, Texture texture) {
   std::vector<Texture>& textures = import.scene.textures;
   textures.push_back(std::move(texture));
-  std::uint64_t texels = 0;
-  for (const Texture& one : textures) texels += static_cast<std::uint64_t>(one.width) * static_cast<std::uint64_t>(one.height);
-  if (texels > import.options.max_texels)
-    throw Failure(ErrorWord::kTooLarge, "texture " + textures.back().name + " brings the scene to " + std::to_string(texels) +
+  import.texels += static_cast<std::uint64_t>(textures.back().width) * static_cast<std::uint64_t>(textures.back().height);
+  if (import.texels > import.options.max_texels)
+    throw Failure(ErrorWord::kTooLarge, "texture " + textures.back().name + " brings the scene to " + std::to_string(import.texels) +
                                             " texels, more than the " + std::to_string(import.options.max_texels) + " allowed");
   return static_cast<std::int32_t>(textures.size() - 1);
 }

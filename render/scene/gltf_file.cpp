@@ -145,9 +145,10 @@ std::span<const std::uint8_t> GltfFile::buffer(std::uint64_t index) {
   const std::string uri = text(buffer, "uri");
   std::span<const std::uint8_t> content = binary_chunk_;
   if (!uri.empty()) {
-    auto [place_in_cache, fresh] = external_buffers_.try_emplace(is_data_uri(uri) ? "data:" + place : uri);
+    const std::string source = is_data_uri(uri) ? "data:" + place : folder_.resolve_uri(uri).string();
+    auto [place_in_cache, fresh] = external_buffers_.try_emplace(source);
     if (fresh) {
-      place_in_cache->second = is_data_uri(uri) ? decode_data_uri(uri, place) : read_bytes(folder_.resolve_uri(uri));
+      place_in_cache->second = is_data_uri(uri) ? decode_data_uri(uri, place) : read_bytes(source);
       buffer_bytes_ += place_in_cache->second.size();
     }
     content = place_in_cache->second;

@@ -252,16 +252,17 @@ class GltfReader {
   void count_objects(std::uint64_t count, const PartRange& range, std::size_t levels, const std::string& place) {
     std::uint64_t triangles = 0;
     for (std::uint32_t p = 0; p < range.count; ++p) triangles += scene_.meshes[scene_.parts[range.first + p].mesh].triangle_count();
-    drawn_triangles_ += count * triangles;
-    objects_ += count;
-    levels_ += count * levels;
     const auto refuse = [&](const std::string& what, std::uint64_t most) {
       throw Failure(ErrorWord::kTooLarge, place + " brings the scene to " + what + ", more than the " + std::to_string(most) + " allowed");
     };
-    if (drawn_triangles_ > import_.options.max_triangles)
-      refuse(std::to_string(drawn_triangles_) + " triangles", import_.options.max_triangles);
-    if (objects_ > kMostObjects) refuse(std::to_string(objects_) + " objects", kMostObjects);
-    if (levels_ > kMostObjects) refuse(std::to_string(levels_) + " levels of detail", kMostObjects);
+    const auto add = [&](std::uint64_t& sum, std::uint64_t of_each, std::uint64_t most, const std::string& what) {
+      if (of_each > 0 && count > (most - sum) / of_each)
+        refuse(std::to_string(sum) + " and " + std::to_string(count) + " times " + std::to_string(of_each) + " " + what, most);
+      sum += count * of_each;
+    };
+    add(objects_, 1, kMostObjects, "objects");
+    add(levels_, levels, kMostObjects, "levels of detail");
+    add(drawn_triangles_, triangles, import_.options.max_triangles, "triangles");
   }
 
   // A glTF mesh's primitives as one range of parts, read once.

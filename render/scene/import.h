@@ -29,6 +29,7 @@ struct Import {
   SceneFolder folder;
   LoadOptions options;
   FileStatement statement;
+  std::uint64_t texels = 0;  // of all textures
 };
 
 /// Makes `mesh` keep the promises of scene.h: drops triangles that are out of range, not finite or without area, then unused vertices;

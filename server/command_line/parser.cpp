@@ -224,12 +224,12 @@ void add_result_commands(Grammar& grammar) {
     builder->app.add_option("--target", builder->arguments().target, "the target file, where it is not where place found it");
     builder->json();
   }
-  check.spec_flags({"threads", "scene.texture_folders"});
+  check.spec_flags({"threads", "scene.texture_folders", "scene.max_triangles", "scene.max_texels"});
   verify.app.add_option("--views", grammar.parsed.context.spec.verify_views, "views to render")->check(CLI::Range(1, 100'000));
   verify.app.add_option("--judged-views", verify.arguments().judged_views, "views inside view cells to judge by rays")
       ->check(CLI::Range(0, 100'000))
       ->capture_default_str();
-  verify.spec_flags({"seed", "threads", "device", "scene.texture_folders"});
+  verify.spec_flags({"seed", "threads", "device", "scene.texture_folders", "scene.max_triangles", "scene.max_texels"});
   check.run(check_command);
   verify.run(verify_command);
 
@@ -260,7 +260,7 @@ void add_service_commands(Grammar& grammar) {
       ->check(CLI::Range(0.0, 1e5));
   option("--upload-mb", service.upload_mb, "that one upload may have")->check(CLI::Range(0.001, 1e6));
   option("--quota-gb", service.quota_gb, "that uploads and results may have together")->check(CLI::Range(0.001, 1e6));
-  option("--owner-share", service.owner_share, "of the queue, uploads, streams and quota that one owner of tokens may take")
+  option("--owner-share", service.owner_share, "of the queue, uploads, streams and quota that one of several owners of tokens may take")
       ->check(CLI::Range(0.001, 1.0));
   option("--cache-gb", service.cache_gb, "that stage caches may have together")->check(CLI::Range(0.0, 1e6));
   option("--scene-mtriangles", service.scene_mtriangles, "millions of triangles that a scene may draw")->check(CLI::Range(1e-6, 1e6));

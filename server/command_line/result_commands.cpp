@@ -74,6 +74,8 @@ OpenedPlacement open_placement(const CommandContext& context) {
   const std::string scene_path = input_path(context, context.arguments.scenes.empty() ? "" : context.arguments.scenes.front(), "scene");
   JobSpec spec = opened.file.spec;
   spec.texture_folders = context.spec.texture_folders;
+  spec.max_triangles = context.spec.max_triangles;
+  spec.max_texels = context.spec.max_texels;
   opened.scene = load_scene(scene_path, load_options(spec));
   require_same("scene", scene_path, opened.scene.sha256, opened.file.scene_sha256);
   open_levels(context, opened);

@@ -369,11 +369,12 @@ JobSpec spec_from_json(const json& object) {
   return spec;
 }
 
-json spec_schema() {
+json spec_schema(bool (*left_out)(const std::string& key)) {
   json schema = {{"$schema", "https://json-schema.org/draft/2020-12/schema"}, {"title", "Standin job"}, {"type", "object"}};
   schema["additionalProperties"] = false;
   const json defaults = to_json(JobSpec{}, false);
   for (const auto& field : spec_fields()) {
+    if (left_out(field.key)) continue;
     json entry = field.schema;
     entry["description"] = field.help;
     entry["default"] = defaults.at(pointer_of(field.key));

@@ -122,7 +122,7 @@ void read_config(JobSpec& spec, const std::filesystem::path& file);
 /// Those that are not the defaults.
 [[nodiscard]] nlohmann::json changed_settings(const JobSpec& spec);
 [[nodiscard]] JobSpec spec_from_json(const nlohmann::json& object);
-/// The job's JSON Schema (configs/job.schema.json is this text).
-[[nodiscard]] nlohmann::json spec_schema();
+/// The job's JSON Schema (configs/job.schema.json is this text), without the settings that `left_out` names by their key.
+[[nodiscard]] nlohmann::json spec_schema(bool (*left_out)(const std::string& key) = [](const std::string&) { return false; });
 
 }  // namespace standin

@@ -3,7 +3,6 @@
 #include <sys/resource.h>
 
 #include <algorithm>
-#include <map>
 
 namespace standin {
 namespace {
@@ -17,93 +16,10 @@ std::vector<double> after_per_cell(const Subdivision& subdivision, const Placeme
   return after_ms;
 }
 
-// Index of the slowest CPV of each cell that has any.
-std::vector<std::size_t> slowest_cpv_per_cell(const Subdivision& subdivision) {
-  std::map<std::uint32_t, std::size_t> slowest;
-  for (std::size_t p = 0; p < subdivision.cpvs.size(); ++p) {
-    const auto [entry, is_new] = slowest.try_emplace(subdivision.cpvs[p].cell, p);
-    if (!is_new && subdivision.cpvs[p].predicted_ms > subdivision.cpvs[entry->second].predicted_ms) entry->second = p;
-  }
-  std::vector<std::size_t> list;
-  for (const auto& [cell, p] : slowest) list.push_back(p);
-  return list;
-}
-
-struct CauseShares {
-  double draws_ms = 0.0, triangles_ms = 0.0, pixels_ms = 0.0;
-
-  void add(const Features& features, const TimeModel& model, bool pixels_capped) {
-    for (std::size_t i = 0; i < kTermCount; ++i) {
-      const auto term = static_cast<Term>(i);
-      const double ms = features.value[i] * model.milliseconds_per_unit[i];
-      if (term == Term::kDraws || term == Term::kTextureSwitches)
-        draws_ms += ms;
-      else if (!is_pixel_term(term))
-        triangles_ms += ms;
-      else if (!pixels_capped)
-        pixels_ms += ms;
-    }
-  }
-  void add(const CauseShares& other) {
-    draws_ms += other.draws_ms;
-    triangles_ms += other.triangles_ms;
-    pixels_ms += other.pixels_ms;
-  }
-  [[nodiscard]] double share(double ms) const {
-    const double total_ms = draws_ms + triangles_ms + pixels_ms;
-    return total_ms > 0.0 ? ms / total_ms : 0.0;
-  }
-  [[nodiscard]] json to_json() const {
-    return {{"draws_share", share(draws_ms)}, {"triangles_share", share(triangles_ms)}, {"pixels_share", share(pixels_ms)}};
-  }
-};
-
-CauseShares shares_of(const World& world, const FeatureTable& table, const Subdivision& subdivision, const Cpv& cpv,
-                      const TimeModel& model) {
-  const Box& box = subdivision.cells[cpv.cell].box;
-  const Gaze gaze(enclosing_cone(subdivision.intervals[cpv.interval], world.camera), box, world.camera);
-  CauseShares shares;
-  for (const auto& term : subdivision.terms_of(cpv))
-    shares.add(table.bound(table.from_box(term.object, box), gaze), model, cpv.pixels_capped);
-  if (cpv.pixels_capped) shares.pixels_ms += model.most_pixel_ms(table.pixel_terms(), table.most_passed_pixels());
-  return shares;
-}
-
-// By cell: of its slowest region.
-std::map<std::uint32_t, json> cause_per_cell(const World& world, const Subdivision& subdivision, const TimeModel& model) {
-  constexpr std::size_t kNamedObjects = 3;
-  const FeatureTable table(world.scene, world.camera);
-  std::map<std::uint32_t, json> causes;
-  for (const auto p : slowest_cpv_per_cell(subdivision)) {
-    const Cpv& cpv = subdivision.cpvs[p];
-    const auto terms = subdivision.terms_of(cpv);
-    json& cause = causes[cpv.cell] = shares_of(world, table, subdivision, cpv, model).to_json();
-    cause["objects"] = objects_json(world, largest_terms({terms.begin(), terms.end()}, kNamedObjects));
-  }
-  return causes;
-}
-
 }  // namespace
 
-std::vector<RegionTerm> largest_terms(std::vector<RegionTerm> terms, std::size_t count) {
-  const auto larger = [](const RegionTerm& a, const RegionTerm& b) {
-    return a.predicted_ms != b.predicted_ms ? a.predicted_ms > b.predicted_ms : a.object < b.object;
-  };
-  const auto middle = terms.begin() + static_cast<std::ptrdiff_t>(std::min(count, terms.size()));
-  std::partial_sort(terms.begin(), middle, terms.end(), larger);
-  terms.erase(middle, terms.end());
-  return terms;
-}
-
-json objects_json(const World& world, const std::vector<RegionTerm>& terms) {
-  json list = json::array();
-  for (const auto& term : terms)
-    list.push_back({{"object", term.object}, {"name", world.scene.objects[term.object].name}, {"ms", term.predicted_ms}});
-  return list;
-}
-
-json heat_map_json(const World& world, const Subdivision& subdivision, const Placement* placement, const TimeModel& model) {
-  const auto causes = cause_per_cell(world, subdivision, model);
+json heat_map_json(const World& world, const Subdivision& subdivision, const std::vector<CellCause>& causes, const Placement* placement,
+                   const TimeModel& model) {
   const auto after_ms = placement != nullptr ? after_per_cell(subdivision, *placement) : std::vector<double>();
   json map = json::array();
   for (std::size_t c = 0; c < subdivision.cells.size(); ++c) {
@@ -117,25 +33,9 @@ json heat_map_json(const World& world, const Subdivision& subdivision, const Pla
                    {"z1", cell.box.max.z},
                    {"before_ms", before_ms},
                    {"after_ms", after}});
-    if (const auto cause = causes.find(static_cast<std::uint32_t>(c)); cause != causes.end()) map.back()["cause"] = cause->second;
   }
+  for (const CellCause& cause : causes) map[cause.cell]["cause"] = cause_json(world, cause);
   return map;
-}
-
-json causes_json(const World& world, const Subdivision& subdivision, const TimeModel& model) {
-  const FeatureTable table(world.scene, world.camera);
-  CauseShares shares;
-  std::map<std::uint32_t, double> by_object;
-  for (const auto p : slowest_cpv_per_cell(subdivision)) {
-    const Cpv& cpv = subdivision.cpvs[p];
-    shares.add(shares_of(world, table, subdivision, cpv, model));
-    for (const auto& term : subdivision.terms_of(cpv)) by_object[term.object] += term.predicted_ms;
-  }
-  std::vector<RegionTerm> objects;
-  for (const auto& [object, ms] : by_object) objects.push_back({object, ms});
-  json causes = shares.to_json();
-  causes["objects"] = objects_json(world, largest_terms(std::move(objects), 20));
-  return causes;
 }
 
 json slow_views_json(const std::vector<SlowView>& slow) {

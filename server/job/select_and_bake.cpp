@@ -191,7 +191,7 @@ class Rounds {
     outcome.short_cpvs =
         count_short(subdivision_, result_.selection, baker_, world_, model_, budget_ms_, page_switches_ms(model_, result_.atlas_pages));
     result_.rounds.push_back(outcome);
-    tell_best();
+    tell_best(outcome.real_bytes, outcome.short_cpvs);
     const bool settled = outcome.baked == 0 && outcome.short_cpvs == 0;
     const bool done = settled && (result_.selection.summary.unmet.empty() || boldness_ == kBoldCostShares.size());
     if (settled && !done) ++boldness_;
@@ -217,6 +217,7 @@ class Rounds {
   SelectedImpostors finish(int bound_iterations) {
     SelectionSummary& summary = result_.selection.summary;
     summary.bytes = baker_.bytes(result_.selection.chosen);
+    tell_best(summary.bytes, 0);
     const SelectionConfig config{.bound_iterations = bound_iterations, .threads = world_.threads};
     if (bound_iterations > 0) {
       spend_nothing_on_unmet();
@@ -235,11 +236,11 @@ class Rounds {
   }
 
  private:
-  void tell_best() const {
-    const BakeRound& round = result_.rounds.back();
-    budget_.found({{"texture_bytes", round.real_bytes},
+  // What would be placed if the rounds ended now.
+  void tell_best(double bytes, std::size_t short_cpvs) const {
+    budget_.found({{"texture_bytes", bytes},
                    {"impostors", static_cast<double>(result_.selection.chosen.size())},
-                   {"unsolved_cpvs", static_cast<double>(result_.selection.summary.unmet.size() + round.short_cpvs)}});
+                   {"unsolved_cpvs", static_cast<double>(result_.selection.summary.unmet.size() + short_cpvs)}});
   }
 
   [[nodiscard]] SelectionBudget limits() const { return {model_.predicted_budget_ms(budget_ms_), result_.page_switch_ms}; }

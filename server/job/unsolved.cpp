@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <map>
 
-#include "server/job/metrics.h"
+#include "server/job/causes.h"
 
 namespace standin {
 namespace {

@@ -192,10 +192,13 @@ void Api::require_room(const std::string& owner) {
                   "the service keeps " + std::to_string(config_.quota_bytes) + " bytes at most: delete jobs or uploads");
   if (config_.owner_share >= 1.0) return;
   const auto share = static_cast<std::uint64_t>(config_.owner_share * static_cast<double>(config_.quota_bytes));
-  const std::uint64_t mine = jobs_.bytes_of(owner);
+  std::set<std::string> offered;  // what the operator put there is nobody's burden
+  for (const Catalogue* catalogue : {&hooks_.scenes, &hooks_.targets})
+    for (const StoredFile& file : catalogue->files()) offered.insert(file.sha256);
+  const std::uint64_t mine = jobs_.bytes_of(owner, offered);
   if (mine >= share)
-    throw Failure(ErrorWord::kDiskFull, "your jobs and uploads hold " + std::to_string(mine) + " bytes, no more than " +
-                                            std::to_string(share) + " may be: delete some");
+    throw Failure(ErrorWord::kQuotaFull, "your jobs and uploads hold " + std::to_string(mine) + " bytes, no more than " +
+                                             std::to_string(share) + " may be: delete some");
 }
 
 std::unique_ptr<BodySink> Api::begin(HttpRequest& request) {

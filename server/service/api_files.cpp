@@ -75,7 +75,7 @@ HttpResponse Api::list_targets(const Exchange&) {
 }
 
 HttpResponse Api::get_schema(const Exchange&) {
-  return json_response(200, spec_schema());
+  return json_response(200, spec_schema(is_services_own));
 }
 
 HttpResponse Api::list_presets(const Exchange&) {

@@ -229,7 +229,7 @@ json job_request_schema() {
     arguments[field.key] = field.schema;
     arguments[field.key]["description"] = std::string(kind_name(field.kind)) + ": " + field.help;
   }
-  json spec = spec_schema();
+  json spec = spec_schema(is_services_own);
   spec.erase("$schema");
   return {{"type", "object"},
           {"required", {"kind"}},

@@ -63,7 +63,11 @@ class Scheduler::Attempt {
 
   void run() {
     if (tells_the_end(read_outcome(folder_))) return conclude();  // an earlier one ended, and its server before it could say so
-    prepare();
+    try {
+      prepare();
+    } catch (const InvalidBody& invalid) {  // accepted by an earlier version, or under other limits
+      return end(failed(invalid.word(), invalid.what()));
+    }
     watch();
     conclude();
   }
@@ -260,13 +264,13 @@ void Scheduler::run(const Job& job) {
 }
 
 void Scheduler::tidy() {
-  if (config_.keep_s > 0.0) {
-    const std::int64_t moment_ms = now_ms() - static_cast<std::int64_t>(1e3 * config_.keep_s);
+  const std::int64_t moment_ms = now_ms() - static_cast<std::int64_t>(1e3 * config_.keep_s);
+  if (config_.keep_s > 0.0)
     for (const Job& job : jobs_.finished_before(moment_ms)) jobs_.remove("", job.id);
-    jobs_.remove_uploads_before(moment_ms);
-  }
   const std::scoped_lock lock(collecting_);
   blobs_.keep_only(blobs_in_use_(), kSpared);
+  // After the blobs: a job that is being submitted may have found its upload a moment ago, and refers to its blob by the next time.
+  if (config_.keep_s > 0.0) jobs_.remove_uploads_before(moment_ms);
   for (const auto& entry : fs::directory_iterator(config_.data / "work")) {
     const auto job = jobs_.find("", entry.path().filename().string());
     if (!job || is_final(job->state)) fs::remove_all(entry.path());

@@ -107,7 +107,7 @@ class Service {
     config.scheduler.data = config.data;
     config.api.presets = config.presets;
     config.api.loopback_only = is_loopback(config.address) && config.tokens.empty();
-    if (config.tokens.empty()) config.api.owner_share = 1.0;  // there is one owner
+    if (config.tokens.empty() || !Tokens(config.tokens).of_several_owners()) config.api.owner_share = 1.0;
     return config;
   }
 

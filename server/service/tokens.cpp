@@ -37,6 +37,10 @@ Tokens::Tokens(const std::filesystem::path& file) : required_(true) {
   if (entries_.empty()) throw Failure(ErrorWord::kBadConfig, file.string() + " names no token: nobody could use the service");
 }
 
+bool Tokens::of_several_owners() const {
+  return std::ranges::any_of(entries_, [&](const Entry& entry) { return entry.owner != entries_.front().owner; });
+}
+
 std::optional<std::string> Tokens::owner_of(const std::string& authorization) const {
   if (!required_) return kLocalOwner;
   constexpr std::string_view kScheme = "Bearer ";

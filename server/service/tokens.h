@@ -20,6 +20,7 @@ class Tokens {
   explicit Tokens(const std::filesystem::path& file);
 
   [[nodiscard]] bool required() const { return required_; }
+  [[nodiscard]] bool of_several_owners() const;
   /// `authorization`: the header's value. Nothing where it holds no known token. Takes the same time whichever token matches, and how much
   /// of one.
   [[nodiscard]] std::optional<std::string> owner_of(const std::string& authorization) const;

@@ -75,8 +75,7 @@ Upload upload_at(const Query& row) {
 }
 
 json event_of(const Job& job) {
-  json data = {{"state", state_name(job.state)}, {"stage", job.stage}, {"fraction", job.fraction}};
-  if (!job.best_so_far.is_null()) data["best_so_far"] = job.best_so_far;
+  json data = {{"state", state_name(job.state)}, {"stage", job.stage}, {"fraction", job.fraction}, {"best_so_far", job.best_so_far}};
   if (!job.problem.is_null()) data["error"] = job.problem;
   if (job.aim_met) data["aim_met"] = *job.aim_met;
   return data;
@@ -254,7 +253,10 @@ std::optional<Job> JobStore::start_next() {
   Transaction transaction(database_);
   std::string id;
   {
-    Query row = database_.query("SELECT id FROM job WHERE state = 'queued' ORDER BY number LIMIT 1");
+    // By turns: who has least running, then who was served longest ago.
+    Query row = database_.query(
+        "SELECT id FROM job JOIN (SELECT owner, sum(state = 'running') AS running, max(coalesce(started_ms, 0)) AS served FROM job GROUP "
+        "BY owner) USING (owner) WHERE state = 'queued' ORDER BY running, served, number LIMIT 1");
     if (!row.step()) return std::nullopt;
     id = row.text(0);
   }
@@ -284,7 +286,8 @@ void JobStore::end_locked(const std::string& id, const JobEnd& end) {
   const auto cpu_s = end.used ? std::optional(end.used->cpu_s) : std::nullopt;
   const auto peak_rss_bytes = end.used ? std::optional(static_cast<std::int64_t>(end.used->peak_rss_bytes)) : std::nullopt;
   database_.run(
-      "UPDATE job SET state = ?, aim_met = ?, problem = ?, finished_ms = ?, fraction = ?, cpu_s = ?, peak_rss_bytes = ? WHERE id = ?",
+      "UPDATE job SET state = ?, aim_met = ?, problem = ?, finished_ms = ?, fraction = ?, cpu_s = ?, peak_rss_bytes = ?, best_so_far = "
+      "'null' WHERE id = ?",
       state_name(end.state), as_integer(end.aim_met), end.problem.dump(), now_ms(), end.state == JobState::kSucceeded ? 1.0 : 0.0, cpu_s,
       peak_rss_bytes, id);
   if (database_.changes() == 0) return;  // it was removed
@@ -305,7 +308,7 @@ void JobStore::finish(const std::string& id, const JobEnd& end) {
 void JobStore::requeue(const std::string& id, bool counted) {
   const std::scoped_lock lock(mutex_);
   Transaction transaction(database_);
-  database_.run("UPDATE job SET state = 'queued', attempts = attempts - ? WHERE id = ? AND state = 'running'",
+  database_.run("UPDATE job SET state = 'queued', attempts = attempts - ?, best_so_far = 'null' WHERE id = ? AND state = 'running'",
                 std::int64_t{counted ? 0 : 1}, id);
   if (database_.changes() == 0) return;
   add_event(find_locked("", id).value());
@@ -421,13 +424,16 @@ void JobStore::remove_uploads_before(std::int64_t moment_ms) {
   database_.run("DELETE FROM upload WHERE created_ms < ? AND sha256 NOT IN (SELECT sha256 FROM job_file)", moment_ms);
 }
 
-std::uint64_t JobStore::bytes_of(const std::string& owner) {
+std::uint64_t JobStore::bytes_of(const std::string& owner, const std::set<std::string>& but) {
   const std::scoped_lock lock(mutex_);
   Query row = database_.query(
-      "SELECT coalesce(sum(bytes), 0) FROM (SELECT sha256, bytes FROM upload WHERE owner = ? UNION "
-      "SELECT job_file.sha256, job_file.bytes FROM job_file JOIN job ON job.id = job_file.job WHERE job.owner = ?)",
+      "SELECT sha256, bytes FROM upload WHERE owner = ? UNION "
+      "SELECT job_file.sha256, job_file.bytes FROM job_file JOIN job ON job.id = job_file.job WHERE job.owner = ?",
       owner, owner);
-  return row.step() ? static_cast<std::uint64_t>(row.integer(0)) : 0;
+  std::uint64_t bytes = 0;
+  while (row.step())
+    if (!but.contains(row.text(0))) bytes += static_cast<std::uint64_t>(row.integer(1));
+  return bytes;
 }
 
 std::vector<std::string> JobStore::blobs_in_use() {

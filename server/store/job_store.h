@@ -10,6 +10,7 @@
 #include <map>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -57,7 +58,7 @@ class JobStore {
   /// Later than `after`, oldest first.
   [[nodiscard]] std::vector<JobEvent> events_of(const std::string& id, std::int64_t after);
 
-  /// The oldest queued job becomes a running one, with one attempt more.
+  /// The next queued job becomes a running one, with one attempt more: owners take turns, and each one's jobs go in their order.
   std::optional<Job> start_next();
   void report(const std::string& id, const std::string& stage, double fraction, const nlohmann::json& best_so_far);
   void finish(const std::string& id, const JobEnd& end);
@@ -77,8 +78,8 @@ class JobStore {
   bool remove_upload(const std::string& owner, const std::string& id);
   /// Those that came before that moment, and whose file no job refers to.
   void remove_uploads_before(std::int64_t moment_ms);
-  /// Of an owner's uploads and of the files of the owner's jobs; the same bytes count once.
-  [[nodiscard]] std::uint64_t bytes_of(const std::string& owner);
+  /// Of an owner's uploads and of the files of the owner's jobs, less those of the SHA-256 in `but`; the same bytes count once.
+  [[nodiscard]] std::uint64_t bytes_of(const std::string& owner, const std::set<std::string>& but = {});
   /// SHA-256 of all that anything refers to.
   [[nodiscard]] std::vector<std::string> blobs_in_use();
   /// By the owner's latest jobs of the kind: medians, in proportion to the bytes of their scenes.

@@ -292,6 +292,14 @@ test("with tokens, nobody takes it all", async () => {
   assert.equal((await watch(berts.id, "b-token", closing.signal)).status, 200);
   closing.abort();
   await stop(shared);
+
+  const narrow = await serve("narrow", "--tokens", tokens, "--owner-share", "0.5", "--quota-gb", "0.01");
+  const upload = async (token, bytes) => (await fetch(`${narrow.url}/v1/uploads?name=a.glb`, { method: "POST", body: Buffer.alloc(bytes, token), headers: { "Content-Type": "application/octet-stream", ...as(token) } })).json();
+  assert.ok((await upload("a-token", 6_000_000)).id, "under the half when it begins");
+  const refused = await upload("a-token", 10);
+  assert.deepEqual([refused.status, refused.word], [507, "quota_full"]);
+  assert.ok((await upload("b-token", 10)).id);
+  await stop(narrow);
 });
 
 test("with tokens, nobody sees what is another's", async () => {

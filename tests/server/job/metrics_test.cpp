@@ -31,10 +31,11 @@ TEST(Causes, AreSharesOfTheSlowestRegionsOwnTime) {
   for (const RegionTerm& term : found.terms_of(*slowest)) total_ms += term.predicted_ms;
   const double draws_ms = 0.1 * static_cast<double>(found.terms_of(*slowest).size());
   ASSERT_GT(total_ms, draws_ms);
-  const auto causes = causes_json(world, found, model);
+  const auto per_cell = causes_per_cell(world, found, model, {});
+  const auto causes = causes_json(world, per_cell);
   EXPECT_NEAR(causes["draws_share"].get<double>(), draws_ms / total_ms, 1e-9);
   EXPECT_NEAR(causes["triangles_share"].get<double>(), 1.0 - draws_ms / total_ms, 1e-9);
-  const auto cause = heat_map_json(world, found, nullptr, model).at(0).at("cause");  // of the only cell: the same region
+  const auto cause = heat_map_json(world, found, per_cell, nullptr, model).at(0).at("cause");  // of the only cell: the same region
   EXPECT_EQ(cause["draws_share"], causes["draws_share"]);
   ASSERT_EQ(cause["objects"].size(), 3U);
   for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(cause["objects"][i], causes["objects"][i]);

@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <regex>
+
 #include "server/http/message.h"
 #include "server/service/work_folder.h"
 
@@ -65,8 +67,13 @@ TEST(JobRequest, BoxesAreLookedAtToTheirNumbers) {
 }
 
 TEST(JobRequest, WhatIsTheServicesOwnIsRefused) {
-  for (const char* pointer : {"/spec/cache/folder", "/spec/cache/update", "/spec/scene/texture_folders", "/spec/threads", "/spec/device"})
+  for (const char* pointer : {"/spec/cache/folder", "/spec/cache/update", "/spec/scene/texture_folders", "/spec/scene/max_triangles",
+                              "/spec/scene/max_texels", "/spec/threads", "/spec/device"}) {
     EXPECT_THAT(pointers_of(with(place(), pointer, json::array())), testing::ElementsAre(pointer)) << pointer;
+    const json::json_pointer place_in_schema(std::regex_replace(std::string(pointer), std::regex("/"), "/properties/"));
+    EXPECT_FALSE(job_request_schema().contains(place_in_schema)) << pointer;
+  }
+  EXPECT_TRUE(job_request_schema().contains(json::json_pointer("/properties/spec/properties/scene/properties/up")));
   EXPECT_THAT(pointers_of(with(place(), "/spec/view_space/kind", "path:/etc/passwd")), testing::ElementsAre("/spec/view_space/kind"));
 }
 

@@ -30,6 +30,11 @@ TEST_F(TokensTest, ATokenIsItsOwners) {
     EXPECT_FALSE(tokens.owner_of(wrong).has_value()) << wrong;
 }
 
+TEST_F(TokensTest, OneOwnerMayHaveSeveral) {
+  EXPECT_FALSE(Tokens(file("anna " + sha256_hex("one") + "\nanna " + sha256_hex("two"))).of_several_owners());
+  EXPECT_TRUE(Tokens(file("anna " + sha256_hex("one") + "\nbert " + sha256_hex("two"))).of_several_owners());
+}
+
 TEST_F(TokensTest, TheHashIsNoToken) {
   EXPECT_FALSE(Tokens(file("anna " + sha256_hex("one"))).owner_of("Bearer " + sha256_hex("one")).has_value());
 }
