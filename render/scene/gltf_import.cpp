@@ -22,6 +22,12 @@ constexpr std::uint64_t kMostObjects = 4'000'000;  // some 2 GB
 
 enum class Mode : std::uint64_t { kTriangles = 4, kStrip = 5, kFan = 6 };
 
+// sum + count * of_each, or as much as there is.
+std::uint64_t plus_times(std::uint64_t sum, std::uint64_t count, std::uint64_t of_each) {
+  if (of_each > 0 && count > (UINT64_MAX - sum) / of_each) return UINT64_MAX;
+  return sum + count * of_each;
+}
+
 // Strips and fans as separate triangles of the same orientation.
 std::vector<std::uint32_t> separate(const std::vector<std::uint32_t>& in, Mode mode) {
   std::vector<std::uint32_t> out;
@@ -252,17 +258,15 @@ class GltfReader {
   void count_objects(std::uint64_t count, const PartRange& range, std::size_t levels, const std::string& place) {
     std::uint64_t triangles = 0;
     for (std::uint32_t p = 0; p < range.count; ++p) triangles += scene_.meshes[scene_.parts[range.first + p].mesh].triangle_count();
-    const auto refuse = [&](const std::string& what, std::uint64_t most) {
-      throw Failure(ErrorWord::kTooLarge, place + " brings the scene to " + what + ", more than the " + std::to_string(most) + " allowed");
-    };
     const auto add = [&](std::uint64_t& sum, std::uint64_t of_each, std::uint64_t most, const std::string& what) {
-      if (of_each > 0 && count > (most - sum) / of_each)
-        refuse(std::to_string(sum) + " and " + std::to_string(count) + " times " + std::to_string(of_each) + " " + what, most);
-      sum += count * of_each;
+      sum = plus_times(sum, count, of_each);
+      if (sum > most)
+        throw Failure(ErrorWord::kTooLarge, place + " brings the scene to " + std::to_string(sum) + " " + what + ", more than the " +
+                                                std::to_string(most) + " allowed");
     };
+    add(drawn_triangles_, triangles, import_.options.max_triangles, "triangles");
     add(objects_, 1, kMostObjects, "objects");
     add(levels_, levels, kMostObjects, "levels of detail");
-    add(drawn_triangles_, triangles, import_.options.max_triangles, "triangles");
   }
 
   // A glTF mesh's primitives as one range of parts, read once.
