@@ -53,6 +53,7 @@ const VIEWS = {
   "result with causes and pictures": "#/jobs/explained/result",
   survey: "#/jobs/survey/result",
   sweep: "#/jobs/swept/result",
+  "sweep worse than its baseline": "#/jobs/regressed/result",
   calibration: "#/jobs/calibrated/result",
   verification: "#/jobs/missed/result",
   bake: "#/jobs/baked/result",

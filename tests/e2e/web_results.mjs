@@ -255,6 +255,18 @@ test("a sweep says how low the budget can go", async () => {
   noFaults();
 });
 
+test("a sweep that meets every budget, but fails against a baseline or a criterion, says so first", async () => {
+  await result("regressed", ".verdict.bad");
+  assert.match(await textOf(tab), /Worse than the baseline\s+at 38 ms: 175828 bytes of texture before, 300000 now \(\+71 %\)\./);
+  assert.match(await textOf(tab), /3 budgets compared; memory may grow by 2 %\. Not in both curves, so not compared: 36 ms\./);
+  assert.deepEqual(await textsOf("#baseline tbody td"), ["38 ms", "176 kB", "300 kB"]);
+  await result("unaccepted", ".verdict.bad");
+  assert.match(await textOf(tab), /Criteria not met\s+at 38 ms: failed, 300000 bytes of texture, 200000 allowed\./);
+  assert.deepEqual((await textsOf("#criteria li")).length, 2);
+  assert.equal(await tab.page.$("#baseline"), null, "there was none");
+  noFaults();
+});
+
 test("what has no view of its own is shown as it is", async () => {
   await result("odd", "section");
   assert.deepEqual(await textsOf("section h2"), ["other.json"]);

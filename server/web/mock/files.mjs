@@ -126,6 +126,53 @@ export const sweptFiles = () => ({
   }),
 });
 
+const MET = [point(42, 0, 0), point(40, 95_000, 0), point(38, 300_000, 0)];
+
+/// Every budget is met, but not as cheaply as before.
+export const regressedFiles = () => ({
+  "sweep.json": json({
+    budgets_from: "those of the baseline",
+    passed: false,
+    points: MET,
+    unmet_ms: [],
+    baseline: {
+      tolerance: 0.02,
+      compared_ms: [38, 40, 42],
+      not_compared_ms: [36],
+      regressions: [
+        {
+          budget_ms: 38,
+          kind: "memory",
+          before: 175_828,
+          after: 300_000,
+          sentence: "at 38 ms: 175828 bytes of texture before, 300000 now (+71 %)",
+        },
+      ],
+      points: [],
+    },
+  }),
+});
+
+/// Every budget is met, but not a criterion.
+export const unacceptedFiles = () => ({
+  "sweep.json": json({
+    budgets_from: "those of the criteria",
+    passed: false,
+    points: MET,
+    unmet_ms: [],
+    acceptance: [
+      { target: "reference", budget_ms: 40, max_unsolved: 0, passed: true, sentence: "at 40 ms: passed" },
+      {
+        target: "reference",
+        budget_ms: 38,
+        max_unsolved: 0,
+        passed: false,
+        sentence: "at 38 ms: failed, 300000 bytes of texture, 200000 allowed",
+      },
+    ],
+  }),
+});
+
 const judged = (gap_pixels, silhouette_bloat_px) => ({ gap_pixels, silhouette_bloat_px });
 
 export const bakedFiles = (folder) => ({

@@ -3,7 +3,17 @@ import { readFileSync } from "node:fs";
 import { basename, dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
 
-import { bakedFiles, explainedFiles, needlessFiles, olderFiles, sweptFiles, untimedFiles, verifiedFiles } from "./files.mjs";
+import {
+  bakedFiles,
+  explainedFiles,
+  needlessFiles,
+  olderFiles,
+  regressedFiles,
+  sweptFiles,
+  unacceptedFiles,
+  untimedFiles,
+  verifiedFiles,
+} from "./files.mjs";
 import { problem } from "./problem.mjs";
 
 const REFERENCE = join(dirname(fileURLToPath(import.meta.url)), "../../../configs/targets/reference.json");
@@ -48,6 +58,8 @@ const finished = (result, survey) => [
   { id: "gaps", kind: "verify", label: "with holes", aim_met: true, ...times(16, 3), files: untimedFiles(result, 3) },
   { id: "baked", kind: "bake", aim_met: true, ...times(15, 1), files: bakedFiles(result) },
   { id: "swept", kind: "sweep", aim_met: false, ...times(25, 4), files: sweptFiles() },
+  { id: "regressed", kind: "sweep", label: "dearer than before", aim_met: false, ...times(24, 4), files: regressedFiles() },
+  { id: "unaccepted", kind: "sweep", label: "dearer than allowed", aim_met: false, ...times(23, 4), files: unacceptedFiles() },
   {
     id: "odd",
     kind: "bake",

@@ -93,8 +93,17 @@ export interface SweepPoint {
   impostors: number;
   cpv: { count: number; unsolved: number };
 }
+export interface SweepRegression {
+  budget_ms: number;
+  kind: "memory" | "unsolved";
+  before: number;
+  after: number;
+  sentence: string;
+}
 export interface Sweep extends Pick<Metrics, "scene" | "target"> {
   points: SweepPoint[];
   budgets_from: string;
-  passed: boolean;
+  baseline?: { tolerance: number; compared_ms: number[]; not_compared_ms: number[]; regressions: SweepRegression[] };
+  acceptance?: { passed: boolean; sentence: string }[];
+  passed: boolean; // every budget is met or excused, and no gate failed
 }

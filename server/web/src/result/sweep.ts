@@ -5,14 +5,19 @@ import { element, section, table } from "../elements";
 import { bytes, count, isNumber, milliseconds, significant } from "../text";
 import type { Sweep, SweepPoint } from "./metrics";
 import { verdictBox } from "./summary";
+import { failedGate } from "./sweep_gates";
 
-/// How low the budget can go, and what that takes.
-export function sweepVerdict({ points }: Sweep): HTMLElement {
+/// What the sweep is held against comes first; then how low the budget can go, and what that takes.
+export function sweepVerdict(sweep: Sweep): HTMLElement {
+  return failedGate(sweep) ?? budgetsVerdict(sweep);
+}
+
+function budgetsVerdict({ points, passed }: Sweep): HTMLElement {
   const met = points.filter((point) => point.met).sort((a, b) => a.budget_ms - b.budget_ms);
   const [lowest] = met;
   if (lowest === undefined) return verdictBox("bad", "No budget met", `at each of ${count(points.length)} budgets some regions stay slow.`);
   const takes = `the lowest that is met, ${milliseconds(lowest.budget_ms)}, takes ${bytes(lowest.texture_bytes)} of textures.`;
-  return met.length === points.length
+  return passed && met.length === points.length
     ? verdictBox("good", "Every budget met", takes)
     : verdictBox("plain", `${count(met.length)} of ${count(points.length)} budgets met`, takes);
 }

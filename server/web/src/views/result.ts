@@ -10,6 +10,7 @@ import { heatMap } from "../result/heat_map";
 import type { Metrics, Sweep } from "../result/metrics";
 import { causes, frameTimes, memory, tiles, unsolved, verdict } from "../result/sections";
 import { sweepCurve, sweepVerdict } from "../result/sweep";
+import { criteria, sinceBaseline } from "../result/sweep_gates";
 import { targetView, type Target } from "../result/target";
 import { imageErrors, verificationTiles, verificationVerdict, type Verification } from "../result/verification";
 import { worstViews } from "../result/worst_views";
@@ -79,7 +80,16 @@ async function placed(job: Job, signal: AbortSignal): Promise<Shown | null> {
 
 async function swept(job: Job, signal: AbortSignal): Promise<Shown | null> {
   const sweep = await artifact(job, "sweep.json", parsed<Sweep>, signal);
-  return sweep && [element("p", { class: "context" }, context(sweep)), sweepVerdict(sweep), ways(job), sweepCurve(sweep, signal)];
+  return (
+    sweep && [
+      element("p", { class: "context" }, context(sweep)),
+      sweepVerdict(sweep),
+      ways(job),
+      sweepCurve(sweep, signal),
+      sinceBaseline(sweep),
+      criteria(sweep),
+    ]
+  );
 }
 
 async function calibrated(job: Job, signal: AbortSignal): Promise<Shown | null> {
