@@ -213,6 +213,7 @@ test("a verification says what was kept and what was not", async () => {
   const VERDICTS = {
     verified: ["good", /^Verified: all of 8 frames kept [\d.]+ ms; rays in \d+ views found no gap/],
     missed: ["bad", /^Budget missed: 3 of 8 frames took longer than [\d.]+ ms; rays/],
+    few_slow: ["good", /^Verified: 8 of 800 frames took longer than [\d.]+ ms, 1 % may; rays/],
     untimed: ["plain", /^Not timed here: all of 8 frames are estimated within [\d.]+ ms, but none was timed/],
     gaps: ["bad", /^Image promise broken: rays in \d+ views found 3 gap pixels/],
   };
@@ -222,6 +223,8 @@ test("a verification says what was kept and what was not", async () => {
     assert.equal(classes, `verdict ${tone}`, id);
     assert.match(said, sentence);
   }
+  await visit(tab, "#/jobs/missed", "#files table");
+  assert.match(await textOf(tab), /finished, aim not met[^]*the placement does not keep what it promises/);
   await result("missed", "#frames");
   assert.match(await textOf(tab), /Slowest frame with impostors\s+125 %[^]*with impostors, measured[^]*Image errors/);
   const walk = await tab.page.$eval("#views a", ({ href }) => href);

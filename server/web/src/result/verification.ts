@@ -23,28 +23,29 @@ export interface Verification {
 }
 
 const BUDGET = "the budget";
+const SLOWER_ALLOWED = percent(0.01); // of the frames, by `verify`: a time bound is stated for 99 % of them
 
-/// The worst that was found comes first.
-export function verificationVerdict({ verify, image }: Verification, budget = BUDGET): HTMLElement {
-  const { views, over_budget_measured: slow, over_budget_estimated: slowEstimates } = verify;
+/// The worst that was found comes first. Whether the budget was kept is the job's to say (`aimMet`): it may let a few frames be slower.
+export function verificationVerdict({ verify, image }: Verification, aimMet: boolean | null, budget = BUDGET): HTMLElement {
+  const { views, over_budget_measured: slow } = verify;
   const images = imageText(image);
   if ((image.gap_pixels ?? 0) > 0 || (image.max_parallax_ratio ?? 0) > 1) return verdictBox("bad", "Image promise broken", `${images}.`);
-  if ((slow ?? 0) > 0)
+  if (aimMet === false)
     return verdictBox("bad", "Budget missed", `${count(slow)} of ${count(views)} frames took longer than ${budget}; ${images}.`);
-  if ((slowEstimates ?? 0) > 0)
-    return verdictBox(
-      "bad",
-      "Budget missed by estimates",
-      `${count(slowEstimates)} of ${count(views)} frames are estimated to take longer than ${budget}; ${images}.`,
-    );
-  if (slow === null)
-    return verdictBox(
-      "plain",
-      "Not timed here",
-      `all of ${count(views)} frames are estimated within ${budget}, but none was timed; ${images}.`,
-    );
-  return verdictBox("good", "Verified", `all of ${count(views)} frames kept ${budget}; ${images}.`);
+  if (slow === null) return verdictBox("plain", "Not timed here", `${estimatesText(verify, budget)}, but none was timed; ${images}.`);
+  return verdictBox(
+    "good",
+    "Verified",
+    slow > 0
+      ? `${count(slow)} of ${count(views)} frames took longer than ${budget}, ${SLOWER_ALLOWED} may; ${images}.`
+      : `all of ${count(views)} frames kept ${budget}; ${images}.`,
+  );
 }
+
+const estimatesText = ({ views, over_budget_estimated: slow }: Verification["verify"], budget: string) =>
+  (slow ?? 0) > 0
+    ? `${count(slow)} of ${count(views)} frames are estimated to take longer than ${budget}`
+    : `all of ${count(views)} frames are estimated within ${budget}`;
 
 const imageText = ({ views, gap_pixels, max_parallax_ratio }: Image) =>
   isNumber(gap_pixels)

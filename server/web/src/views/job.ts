@@ -1,6 +1,6 @@
 // One job: how far it is, what it was asked, what went wrong, and the files that it made.
 
-import { cancelJob, deleteJob, getJob, isFinal, isWalkable, watchJob, type Artifact, type Job, type Progress } from "../api";
+import { cancelJob, deleteJob, getJob, isFinal, isWalkable, watchJob, type Artifact, type Job, type JobKind, type Progress } from "../api";
 import { artifactLink } from "../artifact_link";
 import { bestSoFar } from "../best_so_far";
 import { button, element, folded, replaceIfChanged, section, table } from "../elements";
@@ -23,6 +23,16 @@ const CONTENT: Record<string, string> = {
 const WORST_VIEW = /^worst_view_\d+\.png$/;
 const contentOf = (path: string) => CONTENT[path] ?? (WORST_VIEW.test(path) ? "a worst view: original, with impostors, difference" : "");
 
+/// What it means that the aim was not met.
+const MISSED_TEXT: Record<JobKind, string> = {
+  place: "not every view could be brought within the budget; the result names those",
+  survey: "not every view can be brought within the budget; the result names those",
+  sweep: "not every budget is met, or the curve is worse than what it was held against; the result says which",
+  calibrate: "frame times are not predicted as well as was asked; the result says how well",
+  verify: "the placement does not keep what it promises; the result says what was found",
+  bake: "the impostor does not keep its promise; the result says what was found",
+};
+
 function stateText(job: Job): string {
   switch (job.state) {
     case "queued":
@@ -33,7 +43,7 @@ function stateText(job: Job): string {
         : `${percent(job.fraction)}, ${stageText(job.stage) || "starting"}; running for ${tookText(job)}${job.attempts > 1 ? `, attempt ${job.attempts}` : ""}`;
     case "succeeded":
       return job.aim_met === false
-        ? `Took ${tookText(job)}. The results are there, but not every view could be brought within the budget; the result names those.`
+        ? `Took ${tookText(job)}. The results are there, but ${MISSED_TEXT[job.kind]}.`
         : `Took ${tookText(job)}.`;
     case "failed":
       return "Nothing was written. What went wrong is below; a job with the fault mended can be submitted again.";

@@ -128,7 +128,7 @@ async function verified(job: Job, signal: AbortSignal): Promise<Shown | null> {
   const metrics: Metrics = { verify: result.verify, ...(isNumber(budget_ms) && { budget_ms }) };
   return [
     placementLink(of),
-    verificationVerdict(result, isNumber(budget_ms) ? milliseconds(budget_ms) : undefined),
+    verificationVerdict(result, job.aim_met, isNumber(budget_ms) ? milliseconds(budget_ms) : undefined),
     verificationTiles(result),
     ways(job),
     frameTimes(metrics, signal),
