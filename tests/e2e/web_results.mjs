@@ -80,6 +80,21 @@ test("a finger reads a cell by its first touch and walks by its second", async (
   assert.deepEqual(telephone.faults, []);
 });
 
+test("a click beside the cells leads nowhere, whatever was pointed at before", async () => {
+  await result("explained", ".plate .objects");
+  const [slowest] = await bySlowness("explained");
+  const heat_map = (await artifact("explained", "metrics.json")).heat_map;
+  const [x, z, width] = await tab.page.$eval("svg.plate", ({ viewBox: { baseVal: box } }) => [box.x, box.y, box.width]);
+  const margin = Math.min(...heat_map.map(({ x0 }) => x0)) - x;
+  assert.ok(margin > 0.01 * width, "there is a margin to click at");
+  await pointAt(slowest);
+  assert.match(await textOf(tab), /most by tree_03/);
+  await tab.page.mouse.click(...(await inWindow(tab, x + margin / 2, z + margin / 2)));
+  await new Promise((done) => setTimeout(done, 200));
+  assert.match(await tab.page.evaluate(() => location.hash), /result$/);
+  noFaults();
+});
+
 test("the table of the slowest cells has the causes, where there are any", async () => {
   await result("explained", ".plate .objects");
   const table = "table[aria-label='Slowest cells of the view space']";

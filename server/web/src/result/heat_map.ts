@@ -89,6 +89,7 @@ class HeatMap {
     plate.svg.addEventListener("pointerdown", (event) => (wasCurrent = this.at(plate, event) === this.current));
     plate.svg.addEventListener("pointermove", (event) => this.pointAt(plate, event));
     plate.svg.addEventListener("click", (event) => {
+      if (this.at(plate, event) === null) return; // beside the cells, though one was pointed at before
       this.pointAt(plate, event);
       // A finger reads a cell by its first touch.
       if ((event as PointerEvent).pointerType !== "touch" || wasCurrent) this.walk();
