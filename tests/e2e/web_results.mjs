@@ -170,6 +170,32 @@ test("with a token, which no image sends, pictures are fetched by the page", asy
   noFaults();
 });
 
+test("a view that goes takes the copies of its pictures along, those under way too", async (t) => {
+  const leaving = await newTab(t),
+    { page } = leaving;
+  await page.evaluateOnNewDocument(() => {
+    const { createObjectURL, revokeObjectURL } = URL;
+    globalThis.kept = new Set();
+    URL.createObjectURL = (blob) => (globalThis.made = createObjectURL.call(URL, blob), globalThis.kept.add(globalThis.made), globalThis.made);
+    URL.revokeObjectURL = (url) => (globalThis.kept.delete(url), revokeObjectURL.call(URL, url));
+  });
+  await visit(leaving, "", "table");
+  await page.evaluate(() => sessionStorage.setItem("standin-token", "secret"));
+  let hold;
+  const held = new Promise((done) => (hold = done));
+  await page.setRequestInterception(true);
+  page.on("request", (request) => (request.url().endsWith("worst_view_2.png") ? hold(request) : request.continue()));
+  await visit(leaving, "#/jobs/explained/result", ".worst-view");
+  const late = await held;
+  await page.waitForFunction(() => globalThis.kept.size === 1);
+  await page.evaluate(() => (location.hash = "#/"));
+  await page.waitForSelector("table[aria-label='Jobs, newest first']");
+  await late.continue().catch(() => {}); // the page gave it up
+  await new Promise((done) => setTimeout(done, 500));
+  assert.deepEqual(await page.evaluate(() => [...globalThis.kept]), []);
+  assert.deepEqual(leaving.faults, []);
+});
+
 /** A tab that gets no answer from some addresses. */
 async function tabWithout(t, addresses) {
   const broken = await newTab(t);

@@ -159,7 +159,7 @@ export const getUploads = async () => (await json<{ uploads: Upload[] }>("/v1/up
 
 export const artifactOf = (job: Job, path: string) => job.artifacts.find((artifact) => artifact.path === path);
 export const getText = async (href: string, signal?: AbortSignal) => (await send(href, signal ? { signal } : {})).text();
-export const getBlob = async (href: string) => (await send(href)).blob();
+export const getBlob = async (href: string, signal?: AbortSignal) => (await send(href, signal ? { signal } : {})).blob();
 
 /// Bytes with progress: `onBytes` hears how many have come.
 export async function getBytes(href: string, signal: AbortSignal, onBytes: (received: number) => void): Promise<ArrayBuffer> {

@@ -4,8 +4,10 @@
 import { getBlob, hasToken, type Artifact } from "./api";
 
 async function copyOf(artifact: Artifact, signal: AbortSignal): Promise<string> {
-  const url = URL.createObjectURL(await getBlob(artifact.href));
-  signal.addEventListener("abort", () => URL.revokeObjectURL(url));
+  const blob = await getBlob(artifact.href, signal);
+  signal.throwIfAborted(); // nobody would revoke the address
+  const url = URL.createObjectURL(blob);
+  signal.addEventListener("abort", () => URL.revokeObjectURL(url), { once: true });
   return url;
 }
 
