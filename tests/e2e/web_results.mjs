@@ -338,8 +338,30 @@ test("the best so far is told in words, and follows the job", async () => {
   mock.update("running", { best_so_far: { texture_bytes: 1_650_000, impostors: 41, unsolved_cpvs: 0, rounds_left: 3 } });
   await waitForText(tab, /textures\s+1\.65 MB\s+impostors\s+41\s+slow regions not solved\s+0\s+rounds left\s+3/);
   assert.equal(await tab.page.evaluate(() => globalThis.stays), true, "without a reload");
+  mock.update("running", { best_so_far: null });
+  await tab.page.waitForFunction(() => document.querySelector(".best") === null);
+  mock.update("running", { best_so_far: { impostors: 43 } });
+  await waitForText(tab, /impostors\s+43/);
   mock.update("running", { state: "succeeded", aim_met: true });
   await waitForText(tab, /succeeded/);
   assert.equal(await tab.page.$(".best"), null, "a finished job has a result instead");
   noFaults();
+});
+
+test("a page that gets no event stream asks every few seconds, to the final state", async (t) => {
+  const { page, faults, url } = await newTab(t);
+  const refusal = { title: "The service is busy", status: 503, word: "busy", detail: "you have 4 event streams open, no more may be" };
+  await page.setRequestInterception(true);
+  page.on("request", (request) =>
+    request.url().endsWith("/events")
+      ? request.respond({ status: 503, contentType: "application/problem+json", body: JSON.stringify(refusal) })
+      : request.continue(),
+  );
+  await visit({ page, url }, "#/jobs/queued");
+  await waitForText({ page }, /Waits for its turn/);
+  mock.update("queued", { state: "running", stage: "survey", fraction: 0.25, started: new Date().toISOString() });
+  await waitForText({ page }, /25 %, timing views/);
+  mock.update("queued", { state: "succeeded", aim_met: true, finished: new Date().toISOString() });
+  await waitForText({ page }, /succeeded[^]*Took/);
+  assert.equal(faults.length, 1, "the stream is asked for once; the browser itself reports the refusal");
 });

@@ -56,7 +56,7 @@ export interface Progress {
   readonly state?: JobState;
   readonly stage?: string | null;
   readonly fraction?: number | null;
-  readonly best_so_far?: Job["best_so_far"];
+  readonly best_so_far: Job["best_so_far"];
 }
 export interface Upload {
   readonly id: string;
@@ -224,36 +224,70 @@ export function splitEvents(text: string): { events: ServerEvent[]; rest: string
 
 const pause = (milliseconds: number, signal: AbortSignal) =>
   new Promise<void>((resolve) => {
-    const timer = setTimeout(resolve, milliseconds);
-    signal.addEventListener("abort", () => (clearTimeout(timer), resolve()));
+    const end = () => {
+      clearTimeout(timer);
+      signal.removeEventListener("abort", end);
+      resolve();
+    };
+    const timer = setTimeout(end, milliseconds);
+    signal.addEventListener("abort", end);
   });
 
-/// A job's events until its final state, resumed when the connection breaks. By fetch, since EventSource sends no token.
+const isRefusal = (error: unknown) => error instanceof ProblemError && error.problem.status >= 400 && error.problem.status < 500;
+const isBusy = (error: unknown) => error instanceof ProblemError && error.problem.word === "busy";
+
+/// A job's events until its final state (true) or the end of the connection. By fetch, since EventSource sends no token.
+async function readEvents(
+  id: string,
+  last: { id: string },
+  signal: AbortSignal,
+  onProgress: (progress: Progress) => void,
+): Promise<boolean> {
+  const response = await send(`${jobPath(id)}/events`, {
+    signal,
+    headers: { Accept: "text/event-stream", ...(last.id === "" ? {} : { "Last-Event-ID": last.id }) },
+  });
+  const reader = response.body!.pipeThrough(new TextDecoderStream()).getReader();
+  let text = "";
+  for (let part = await reader.read(); !part.done; part = await reader.read()) {
+    const { events, rest } = splitEvents(text + part.value);
+    text = rest;
+    for (const event of events) {
+      if (event.id !== "") last.id = event.id;
+      const progress = JSON.parse(event.data) as Progress;
+      onProgress(progress);
+      if (progress.state !== undefined && isFinal(progress.state)) return true;
+    }
+  }
+  return false;
+}
+
+const POLL_MS = 3000;
+const LONGEST_PAUSE_MS = 10_000;
+
+/// What becomes of a job, until its final state: by its events, resumed when the connection breaks, or, where the service has no stream left
+/// for this page (`busy`), by asking every few seconds.
 export async function watchJob(id: string, signal: AbortSignal, onProgress: (progress: Progress) => void): Promise<void> {
-  let last = "";
-  for (let failures = 0; !signal.aborted;) {
+  const last = { id: "" };
+  let failures = 0,
+    polls = false;
+  const heard = (progress: Progress) => {
+    failures = 0;
+    onProgress(progress);
+  };
+  const poll = async () => {
+    const job = await getJob(id, signal);
+    heard(job);
+    return isFinal(job.state);
+  };
+  while (!signal.aborted) {
     try {
-      const response = await send(`${jobPath(id)}/events`, {
-        signal,
-        headers: { Accept: "text/event-stream", ...(last === "" ? {} : { "Last-Event-ID": last }) },
-      });
-      const reader = response.body!.pipeThrough(new TextDecoderStream()).getReader();
-      let text = "";
-      for (let part = await reader.read(); !part.done; part = await reader.read()) {
-        const { events, rest } = splitEvents(text + part.value);
-        text = rest;
-        for (const event of events) {
-          if (event.id !== "") last = event.id;
-          const progress = JSON.parse(event.data) as Progress;
-          onProgress(progress);
-          failures = 0;
-          if (progress.state !== undefined && isFinal(progress.state)) return;
-        }
-      }
+      if (await (polls ? poll() : readEvents(id, last, signal, heard))) return;
     } catch (error) {
       if (signal.aborted) return;
-      if (error instanceof ProblemError && error.problem.status >= 400 && error.problem.status < 500) throw error;
+      if (isRefusal(error)) throw error;
+      polls ||= isBusy(error);
     }
-    await pause(Math.min(10_000, 500 * 2 ** failures++), signal);
+    await pause(polls ? POLL_MS : Math.min(LONGEST_PAUSE_MS, 500 * 2 ** failures++), signal);
   }
 }

@@ -23,7 +23,7 @@ export interface Verification {
 }
 
 const BUDGET = "the budget";
-const SLOWER_ALLOWED = percent(0.01); // of the frames, by `verify`: a time bound is stated for 99 % of them
+const SLOWER_ALLOWED = percent(0.01); // of the frames: so many `verify` lets pass
 
 /// The worst that was found comes first. Whether the budget was kept is the job's to say (`aimMet`): it may let a few frames be slower.
 export function verificationVerdict({ verify, image }: Verification, aimMet: boolean | null, budget = BUDGET): HTMLElement {
