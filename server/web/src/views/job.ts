@@ -181,7 +181,7 @@ class JobPage {
       ...(state && { state }),
       ...(stage !== undefined && { stage }),
       ...(fraction !== undefined && { fraction }),
-      ...(best_so_far !== undefined && { best_so_far }),
+      best_so_far: best_so_far ?? null,
       started: this.job.started ?? (state === "running" ? new Date().toISOString() : null),
     };
     this.show();
