@@ -132,7 +132,8 @@ test("worst views stand side by side, each pane under its head", async () => {
   const shown = frames[pictures[0].frame];
   const captions = await textsOf(".worst-view figcaption");
   assert.equal(captions.length, pictures.length);
-  assert.match(captions[0], /^Worst view 1 . [\d.]+ ms before, [\d.]+ ms with impostors \(estimated\); image error [\d.]+ %, FLIP [\d.e-]+; at .* m/);
+  assert.match(captions[0], /^Worst view 1 . [\d.]+ ms \(estimated\) before, [\d.]+ ms \(estimated\) with impostors; image error [\d.]+ %, FLIP [\d.e-]+; at .* m/);
+  assert.match(captions[1], /^Worst view 2 . [\d.]+ ms \(estimated\) before, [\d.]+ ms with impostors; image/, "each time for itself");
   const inFirst = (selector, read) => tab.page.$$eval(`.worst-view:first-of-type ${selector}`, (nodes, key) => nodes.map((node) => node[key]), read);
   assert.deepEqual(await inFirst(".pane", "textContent"), ["Original", "With impostors", "Difference, amplified 4\u00d7"]);
   assert.deepEqual(await inFirst("img", "alt"), ["original", "with impostors", "difference, amplified 4\u00d7"].map((pane) => `Worst view 1: ${pane}`));
@@ -290,6 +291,14 @@ test("a bake shows its impostor's weight, errors and file", async () => {
   assert.match(await tab.page.$eval(".actions a", ({ href }) => href), /artifacts\/impostors\.glb$/);
   await tab.page.waitForFunction(() => document.querySelector("#pictures img").naturalWidth > 0);
   noFaults();
+});
+
+test("a picture that cannot be loaded says so", async (t) => {
+  const broken = await tabWithout(t, /picture\.png$/);
+  await visit(broken, "#/jobs/baked/result", "#pictures");
+  await waitForText(broken, /picture\.png cannot be loaded/);
+  assert.equal(await broken.page.$("#pictures img"), null);
+  assert.equal(broken.faults.length, 1, "the browser itself reports the failure");
 });
 
 test("a sweep says how low the budget can go", async () => {

@@ -43,9 +43,11 @@ function withCauses({ heat_map, ...metrics }) {
   return { ...metrics, heat_map: heat_map.map((cell) => (cell === slowest || cell === next ? { ...cell, cause: cause(cell) } : cell)) };
 }
 
+/// The second one's frame was timed with impostors, but not before.
 function withPictures({ verify, ...metrics }) {
   const pictures = [3, 0].map((frame, i) => ({ file: `worst_view_${i + 1}.png`, frame }));
-  return { ...metrics, verify: { ...verify, pictures } };
+  const frames = verify.frames.map((frame, i) => (i === 0 ? { ...frame, after_ms: 0.9 * frame.estimated_after_ms } : frame));
+  return { ...metrics, verify: { ...verify, frames, pictures } };
 }
 
 export const olderFiles = (folder) => ({ "metrics.json": json(older(readMetrics(folder))), "result.json": json({}) });

@@ -112,12 +112,9 @@ function sizes({ gpu_bytes: formats = {} }: Baked): HTMLElement | null {
 function picture(file: Artifact, signal: AbortSignal): HTMLElement {
   const image = element("img", { alt: file.path }),
     link = element("a", { target: "_blank", "aria-label": `${file.path} in full size` }, image);
-  withSource(
-    file,
-    signal,
-    (address) => (image.src = link.href = address),
-    () => link.replaceWith(`${file.path} cannot be loaded.`),
-  );
+  const fail = () => link.replaceWith(element("p", { class: "soft" }, `${file.path} cannot be loaded.`));
+  image.addEventListener("error", fail);
+  withSource(file, signal, (address) => (image.src = link.href = address), fail);
   return element("figure", {}, link, element("figcaption", {}, file.path));
 }
 

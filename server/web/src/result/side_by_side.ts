@@ -5,7 +5,7 @@ import type { Artifact } from "../api";
 import { withSource } from "../artifact_source";
 import { element } from "../elements";
 import { walkAddress } from "../router";
-import { milliseconds, percent, significant } from "../text";
+import { isNumber, milliseconds, percent, significant } from "../text";
 import type { Metrics, Triple, VerifiedFrame } from "./metrics";
 
 const PANES = ["Original", "With impostors", "Difference, amplified 4\u00d7"] as const;
@@ -27,10 +27,13 @@ export function walkLink(id: string, { position, direction }: { position: Triple
 /// As it was measured, or estimated where it was not.
 export const frameTime = (frame: VerifiedFrame, when: "before" | "after") => frame[`${when}_ms`] ?? frame[`estimated_${when}_ms`];
 
+function timeText(frame: VerifiedFrame, when: "before" | "after"): string {
+  const how = isNumber(frame[`${when}_ms`]) ? "" : " (estimated)"; // one of a frame's two may be timed without the other
+  return `${milliseconds(frameTime(frame, when))}${how}`;
+}
+
 function captionText(frame: VerifiedFrame): string {
-  const times = `${milliseconds(frameTime(frame, "before"))} before, ${milliseconds(frameTime(frame, "after"))} with impostors`;
-  const how = frame.after_ms === null ? " (estimated)" : "";
-  return `${times}${how}; image error ${percent(frame.mean_error)}, FLIP ${significant(frame.mean_flip, 2)}; at ${placeText(frame.position)} m`;
+  return `${timeText(frame, "before")} before, ${timeText(frame, "after")} with impostors; image error ${percent(frame.mean_error)}, FLIP ${significant(frame.mean_flip, 2)}; at ${placeText(frame.position)} m`;
 }
 
 function panes(name: string, artifact: Artifact, signal: AbortSignal): HTMLElement {
