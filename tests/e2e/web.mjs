@@ -173,6 +173,20 @@ test("a job goes from the form over its progress to the walk", async () => {
   assert.equal(tab.faults.splice(0).length, 1, "the browser itself reports the refusal");
 });
 
+test("the form offers the settings that the service names, all and no others", async (t) => {
+  const { page, url } = await browser.newPage(mock.url);
+  t.after(() => page.close());
+  const group = (...names) => ({ type: "object", properties: Object.fromEntries(names.map((name) => [name, { type: "integer" }])) });
+  const schema = { properties: { budget_ms: { type: "number" }, seed: { type: "integer" }, threads: { type: "integer" }, cache: group("size", "age") } };
+  await page.setRequestInterception(true);
+  page.on("request", (request) =>
+    request.url().endsWith("/v1/schema") ? request.respond({ contentType: "application/json", body: JSON.stringify(schema) }) : request.continue(),
+  );
+  const offered = () => page.$$eval("[id^=set-]:is(input, select)", (inputs) => inputs.map(({ id }) => id));
+  await visit({ page, url }, "#/new", "#scene-file");
+  assert.deepEqual(await offered(), ["set-seed", "set-threads", "set-cache-size", "set-cache-age"]);
+});
+
 test("a running job can be cancelled", async () => {
   await visit(tab, "#/jobs/running");
   await tab.page.evaluate(() => [...document.querySelectorAll("button")].find((node) => node.textContent === "Cancel this job").click());

@@ -30,6 +30,16 @@ const BEST = {
 const POLICY =
   "default-src 'self'; img-src 'self' blob: data:; connect-src 'self' blob:; style-src 'self'; script-src 'self' 'wasm-unsafe-eval'";
 
+const OF_THE_SERVICE = { "": ["cache", "threads", "device"], scene: ["texture_folders", "max_triangles", "max_texels"] };
+
+/// The settings of a job, without those that are the service's own.
+function offeredSchema() {
+  const schema = JSON.parse(readFileSync(join(here, "../../../configs/job.schema.json"), "utf8"));
+  for (const [group, keys] of Object.entries(OF_THE_SERVICE))
+    for (const key of keys) delete (group === "" ? schema : schema.properties[group]).properties[key];
+  return schema;
+}
+
 class Mock {
   constructor({ page, result, scene, survey }) {
     this.page = page;
@@ -164,8 +174,7 @@ class Mock {
 
   async answer(request, response, url) {
     const [, , collection, id, part, ...rest] = url.pathname.split("/").map(decodeURIComponent);
-    if (collection === "schema")
-      return { status: 200, body: JSON.parse(readFileSync(join(here, "../../../configs/job.schema.json"), "utf8")) };
+    if (collection === "schema") return { status: 200, body: offeredSchema() };
     if (collection === "presets")
       return {
         status: 200,

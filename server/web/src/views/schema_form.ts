@@ -17,9 +17,6 @@ interface Schema {
   readonly exclusiveMaximum?: number;
 }
 
-// Of the server, not of a job: it sets them itself.
-const NOT_OFFERED = new Set(["cache", "threads"]);
-
 type Input = HTMLInputElement | HTMLSelectElement;
 interface Field {
   readonly path: readonly string[];
@@ -86,7 +83,7 @@ export class SchemaForm {
     schema: object,
     private readonly shownElsewhere: ReadonlySet<string>,
   ) {
-    const entries = Object.entries((schema as Schema).properties ?? {}).filter(([key]) => !NOT_OFFERED.has(key));
+    const entries = Object.entries((schema as Schema).properties ?? {});
     const single = entries.filter(([, value]) => value.type !== "object").map(([key, value]) => this.field([key], value));
     const groups = entries
       .filter(([, value]) => value.type === "object")
