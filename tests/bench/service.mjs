@@ -325,13 +325,23 @@ async function hostile(requests = 1000, seed = 1, memory_gb = 8) {
   promise(child.exitCode === null && child.signalCode === null && (await get(`${url}/healthz`)).status === "ok", `${requests} hostile requests (seed ${seed}); the server lives`);
   promise(Object.keys(statuses).every((status) => status < "500" || ["503", "505", "507", "none"].includes(status)), `answers by status: ${JSON.stringify(statuses)}`);
   let jobs;
-  while (!(jobs = (await get(`${url}/v1/jobs?limit=200`)).jobs).every(ended)) await sleep(200);
+  while (!(jobs = await allJobs(url)).every(ended)) await sleep(200);
   const ends = {};
   for (const { state, error } of jobs) ends[error?.word ?? state] = (ends[error?.word ?? state] ?? 0) + 1;
   promise(!("worker_lost" in ends) && !("internal" in ends), `${jobs.length} jobs by their end: ${JSON.stringify(ends)}`);
   await killServer("SIGTERM");
   promise(child.exitCode === 0, `the server ends with ${child.exitCode ?? child.signalCode} when it is asked to`);
   promise(workers().length === 0, "no worker is left");
+}
+
+async function allJobs(url) {
+  const jobs = [];
+  for (let after = ""; after !== null; ) {
+    const page = await get(`${url}/v1/jobs?limit=200${after && `&after=${after}`}`);
+    jobs.push(...page.jobs);
+    after = page.next;
+  }
+  return jobs;
 }
 
 if (!existsSync(binary ?? "") || !["kill", "cancel", "load", "hostile"].includes(what)) {
