@@ -1,7 +1,6 @@
 #include "server/service/api.h"
 
 #include <algorithm>
-#include <cmath>
 #include <set>
 #include <sstream>
 
@@ -80,12 +79,6 @@ void require_length(const HttpRequest& request, std::uint64_t most_bytes) {
                   "a body of " + std::to_string(announced) + " bytes, no more than " + std::to_string(most_bytes) + " are taken");
 }
 
-// At least one.
-unsigned share_of(unsigned most, double share) {
-  return std::max(1U, static_cast<unsigned>(std::floor(share * most)));
-}
-
-// An address in brackets, or a name; what is neither is no host's name.
 std::string host_name(const std::string& host) {
   const std::size_t bracket = host.starts_with('[') ? host.find(']') : host.find(':');
   if (!host.starts_with('[')) return host.substr(0, bracket);
@@ -124,6 +117,12 @@ void harden(HttpResponse& response) {
 }
 
 constexpr int kDeepestBody = 16;
+// `what`: as in "3 of them".
+void require_place(const OwnerTally& open, unsigned most, unsigned share, const std::string& owner, const std::string& what) {
+  if (open.all() >= most) throw Failure(ErrorWord::kBusy, std::to_string(most) + " " + what + ", no more may be");
+  if (open.of(owner) >= share) throw Failure(ErrorWord::kBusy, std::to_string(share) + " " + what + " for you alone, no more may be");
+}
+
 const std::set<std::string> kUploadTypes = {"application/octet-stream", "application/json", "model/gltf-binary", "application/zip"};
 
 }  // namespace
@@ -171,19 +170,11 @@ void Api::require_own_host(const HttpRequest& request) const {
 }
 
 void Api::require_stream(const std::string& owner) const {
-  const unsigned share = share_of(config_.most_streams, config_.owner_share);
-  if (streams_.all() >= config_.most_streams)
-    throw Failure(ErrorWord::kBusy, std::to_string(streams_.all()) + " event streams are open, no more may be");
-  if (streams_.of(owner) >= share)
-    throw Failure(ErrorWord::kBusy, "you have " + std::to_string(share) + " event streams open, no more may be");
+  require_place(streams_, config_.most_streams, share_of(config_.most_streams, config_.owner_share), owner, "event streams are open");
 }
 
 void Api::require_upload(const std::string& owner) const {
-  const unsigned share = share_of(config_.most_uploads, config_.owner_share);
-  if (uploads_.all() >= config_.most_uploads)
-    throw Failure(ErrorWord::kBusy, std::to_string(uploads_.all()) + " uploads are on their way, no more may be");
-  if (uploads_.of(owner) >= share)
-    throw Failure(ErrorWord::kBusy, "you have " + std::to_string(share) + " uploads on their way, no more may be");
+  require_place(uploads_, config_.most_uploads, share_of(config_.most_uploads, config_.owner_share), owner, "uploads are on their way");
 }
 
 void Api::require_room(const std::string& owner) {

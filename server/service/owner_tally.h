@@ -1,6 +1,8 @@
-// How much of what all owners share each has open right now, so that one of them cannot take it all from the others.
+// What all owners share, and how much of it each has open right now: so that one of them cannot take it all from the others.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -8,6 +10,12 @@
 #include <utility>
 
 namespace standin {
+
+/// Of `most` in all, what one owner may have: `share` (0..1] of it, at least one.
+template <class Count>
+[[nodiscard]] Count share_of(Count most, double share) {
+  return std::max(Count{1}, static_cast<Count>(std::floor(share * static_cast<double>(most))));
+}
 
 class OwnerTally {
   struct Counts {

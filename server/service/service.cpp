@@ -4,10 +4,8 @@
 #include <sys/file.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <atomic>
 #include <chrono>
-#include <cmath>
 #include <thread>
 
 #include "render/base/error.h"
@@ -78,8 +76,7 @@ class Service {
 
  private:
   static QueueLimits queue_limits(const ServiceConfig& config) {
-    const double share = std::floor(config.api.owner_share * static_cast<double>(config.most_queued));
-    return {config.most_queued, std::max<std::size_t>(1, static_cast<std::size_t>(share))};
+    return {config.most_queued, share_of<std::size_t>(config.most_queued, config.api.owner_share)};
   }
 
   struct StopFirst {

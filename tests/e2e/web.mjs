@@ -1,26 +1,12 @@
 // The service's page in a real browser, against the mock of the service that shows the placed city: every view opens without a word on the
 // console or a serious accessibility finding, in light and dark; the walk draws what placement.json names; a job goes from form to walk.
 import assert from "node:assert/strict";
-import { join } from "node:path";
-import test, { after, before } from "node:test";
-import { startMock } from "../../server/web/mock/server.mjs";
-import { expectAccessible, openBrowser, setScheme, textOf, visit, waitForText } from "./browser.mjs";
-import { city, fixture, placed, resultOf } from "./standin.mjs";
+import test from "node:test";
+import { expectAccessible, setScheme, textOf, visit, waitForText } from "./browser.mjs";
+import { browser, mock, noFaults, tab } from "./mock_page.mjs";
+import { city, placed, resultOf } from "./standin.mjs";
 
 const { placement, metrics } = resultOf(placed);
-let mock, browser, tab;
-
-before(async () => {
-  mock = await startMock({ page: process.env.STANDIN_WEB, result: placed, scene: city, survey: join(fixture, "survey") });
-  browser = await openBrowser();
-  tab = await browser.newPage(mock.url);
-});
-after(async () => {
-  await browser?.close();
-  mock?.close();
-});
-
-const noFaults = () => assert.deepEqual(tab.faults.splice(0), []);
 const canvas = () => tab.page.$eval("canvas", (node) => ({ ...node.dataset }));
 const address = ({ position, direction }) => `position=${position.join(",")}&direction=${direction.join(",")}`;
 const press = async (key) => {

@@ -1,25 +1,10 @@
 // The results of each kind of job in a real browser, against the mock of the service: what is said of a place and a view, of a calibrated
 // machine, a verified placement, a baked impostor and a running job, and that nothing is said of what a result does not have.
 import assert from "node:assert/strict";
-import { join } from "node:path";
-import test, { after, before } from "node:test";
-import { startMock } from "../../server/web/mock/server.mjs";
-import { openBrowser, textOf, visit, waitForText } from "./browser.mjs";
-import { city, fixture, placed } from "./standin.mjs";
+import test from "node:test";
+import { textOf, visit, waitForText } from "./browser.mjs";
+import { browser, mock, noFaults, tab } from "./mock_page.mjs";
 
-let mock, browser, tab;
-
-before(async () => {
-  mock = await startMock({ page: process.env.STANDIN_WEB, result: placed, scene: city, survey: join(fixture, "survey") });
-  browser = await openBrowser();
-  tab = await browser.newPage(mock.url);
-});
-after(async () => {
-  await browser?.close();
-  mock?.close();
-});
-
-const noFaults = () => assert.deepEqual(tab.faults.splice(0), []);
 const result = async (id, selector) => {
   await visit(tab, `#/jobs/${id}/result`, selector);
   await tab.page.waitForNetworkIdle({ idleTime: 150, concurrency: 1 });

@@ -1,7 +1,7 @@
 // What a running job has in hand, in words: what would be the result if it ended now.
 
 import type { Job } from "./api";
-import { element } from "./elements";
+import { element, factList } from "./elements";
 import { bytes, count, isNumber, milliseconds, percent, significant } from "./text";
 
 type Figures = NonNullable<Job["best_so_far"]>;
@@ -45,14 +45,5 @@ export const bestEntries = (figures: Figures): [string, string][] =>
     });
 
 export function bestSoFar(figures: Figures): HTMLElement {
-  return element(
-    "div",
-    { class: "best" },
-    element("h2", {}, "Best so far"),
-    element(
-      "dl",
-      { class: "facts" },
-      ...bestEntries(figures).flatMap(([name, text]) => [element("dt", {}, name), element("dd", {}, text)]),
-    ),
-  );
+  return element("div", { class: "best" }, element("h2", {}, "Best so far"), factList(bestEntries(figures)));
 }

@@ -53,6 +53,10 @@ export function table<Row>(columns: readonly Column<Row>[], rows: readonly Row[]
   return element("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": caption }, inner);
 }
 
+/// Names and what they have, one below the other.
+export const factList = (entries: readonly (readonly [string, Child])[]): HTMLElement =>
+  element("dl", { class: "facts" }, ...entries.flatMap(([name, value]) => [element("dt", {}, name), element("dd", {}, value)]));
+
 export const folded = (title: string, ...children: Child[]) => element("details", {}, element("summary", {}, title), ...children);
 
 export function button(text: string, action: () => void, attributes: Attributes = {}): HTMLButtonElement {

@@ -2,7 +2,7 @@
 // calibration would buy.
 
 import { lineChart } from "../charts";
-import { element, section, table } from "../elements";
+import { element, factList, section, table } from "../elements";
 import { count, isNumber, milliseconds, percent, significant } from "../text";
 import { tileList, verdictBox } from "./summary";
 
@@ -159,11 +159,7 @@ function machine({ machine: measured }: Target): HTMLElement {
     "machine",
     "Where it holds",
     "Frames can be timed against it on this device and renderer; elsewhere their times are estimated from it.",
-    element(
-      "dl",
-      { class: "facts" },
-      ...entries.flatMap(([key, name]) => [element("dt", {}, name), element("dd", {}, text(measured[key]))]),
-    ),
+    factList(entries.map(([key, name]) => [name, text(measured[key])])),
   );
 }
 

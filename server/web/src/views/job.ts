@@ -3,7 +3,7 @@
 import { cancelJob, deleteJob, getJob, isFinal, isWalkable, watchJob, type Artifact, type Job, type JobKind, type Progress } from "../api";
 import { artifactLink } from "../artifact_link";
 import { bestSoFar } from "../best_so_far";
-import { button, element, folded, replaceIfChanged, section, table } from "../elements";
+import { button, element, factList, folded, replaceIfChanged, section, table } from "../elements";
 import { jobTitle, KIND_TEXT, progressElement, stageText, stateElement, stateWord, tookText, whatItIs } from "../job_text";
 import { failureBox, problemBox } from "../problem";
 import { jobAddress, type Route } from "../router";
@@ -80,19 +80,13 @@ function facts(job: Job): HTMLElement {
     "asked",
     "What was asked",
     "",
-    element(
-      "dl",
-      { class: "facts" },
-      element("dt", {}, "kind"),
-      element("dd", {}, KIND_TEXT[job.kind]),
-      element("dt", {}, "scene"),
-      element("dd", {}, job.scene === null ? "none" : `${job.scene.name}, ${bytes(job.scene.bytes)}`),
-      ...times.flatMap(([name, time]) =>
-        time === null
-          ? []
-          : [element("dt", {}, name), element("dd", {}, element("time", { datetime: time }, new Date(time).toLocaleString()))],
+    factList([
+      ["kind", KIND_TEXT[job.kind]],
+      ["scene", job.scene === null ? "none" : `${job.scene.name}, ${bytes(job.scene.bytes)}`],
+      ...times.flatMap(([name, time]): [string, HTMLElement][] =>
+        time === null ? [] : [[name, element("time", { datetime: time }, new Date(time).toLocaleString())]],
       ),
-    ),
+    ]),
     folded("The whole request", element("pre", { tabindex: 0, class: "scroll" }, JSON.stringify(job.request, null, 2))),
   );
 }
