@@ -17,7 +17,7 @@ export function verdict(metrics: Metrics): HTMLElement {
     return verdictBox(
       "bad",
       "Budget not met everywhere",
-      `${count(cpv.unsolved)} of ${count(cpv.count)} slow regions cannot be brought under ${budget}; the rest is solved.`,
+      `${count(cpv.unsolved)} of ${count(cpv.count)} slow regions cannot be brought under ${budget}${cpv.solved > 0 ? "; the rest is solved" : ""}.`,
     );
   if ((verify?.over_budget_measured ?? 0) > 0)
     return verdictBox(
