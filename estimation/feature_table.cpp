@@ -11,12 +11,6 @@ namespace {
 constexpr std::uint32_t kSamplesPerMesh = 64;
 constexpr std::array<Term, kPixelKindCount> kPixelTerm = {Term::kPlainPixels, Term::kTexturedPixels, Term::kMaskedPixels};
 
-/// How a part is drawn.
-struct PartStyle {
-  PixelKind kind = PixelKind::kPlain;
-  bool double_sided = false;
-};
-
 PartStyle style_of(const Scene& scene, const Part& part) {
   return {pixel_kind(scene, part), scene.materials[part.material].double_sided};
 }
@@ -175,11 +169,11 @@ Features FeatureTable::bound(std::uint32_t object, const Box& eyes) const {
   return features;
 }
 
-ObjectFromBox FeatureTable::from_box(std::uint32_t object, const Box& eyes) const {
-  const ProjectionFromBox projection(camera_, eyes);
-  ObjectFromBox result{counts_from(object, eyes), {}};
-  for_each_part(object, eyes, [&](const SurfaceSamples& samples, const PlacedMesh& mesh, const PartStyle& style, bool maybe_near) {
-    const auto blocks = [&](std::span<const SurfaceSample> of) { return facing_blocks(of, mesh, style.double_sided, projection, eyes); };
+ObjectFromBox FeatureTable::from_box(std::uint32_t object, const EyesOf& from) const {
+  const ProjectionFromBox projection(camera_, from.eyes);
+  ObjectFromBox result{counts_from(object, from.eyes), {}};
+  for_each_part(object, from.eyes, [&](const SurfaceSamples& samples, const PlacedMesh& mesh, const PartStyle& style, bool maybe_near) {
+    const auto blocks = [&](std::span<const SurfaceSample> of) { return facing_blocks(of, mesh, style, projection, from); };
     result.parts.push_back({style.kind, samples.slenderness, blocks(samples.samples), {}});
     if (maybe_near) result.parts.back().near_samples = blocks(samples.near_samples);
   });
@@ -191,7 +185,7 @@ Features FeatureTable::bound(const ObjectFromBox& object, const Gaze& gaze) cons
   Features features = object.counts;
   for (const ObjectFromBox::Part& part : object.parts) {
     const PartSum most =
-        larger(most_in_gaze(part.samples, part.kind, gaze, cos_corner), most_in_gaze(part.near_samples, part.kind, gaze, cos_corner));
+        larger(most_in_gaze(part.samples, gaze, cos_corner), most_in_gaze(part.near_samples, gaze, cos_corner));
     add_part(most, part.kind, part.slenderness, most_passed_pixels_, features);
   }
   cap_pixels(most_passed_pixels_, features);

@@ -1,74 +1,152 @@
 #include "estimation/object_from_box.h"
 
 #include <algorithm>
+#include <limits>
+#include <numeric>
+#include <utility>
+
+#include "render/base/vector_clones.h"
 
 namespace standin {
 namespace {
 
-namespace stdx = std::experimental;
+// An estimate adds the same up in another order.
+constexpr double kSummation = 1.0 + 1e-12;
 
-void set_lane(SampleBlock& block, std::size_t lane, const Patch& patch, const MostInImage& most, const Box& eyes) {
-  block.bearings.set(lane, patch.centre, most.reach_m, eyes);
-  block.corner_depth_m[lane] = most.corner_depth_m;
-  block.facing_px_m2[lane] = most.facing_px_m2;
-  block.softening_m2[lane] = most.softening_m2;
-  block.edges_px_m[lane] = most.edges_px_m;
-  block.triangles[lane] = patch.triangles;
-}
+// Of the distance: the radius of samples that are taken together. What one shows grows by about a percent.
+constexpr double kCloseShare = 0.01;
 
-void enclose(SampleBlock& block, std::size_t lanes) {
-  Box bounds;
-  for (std::size_t lane = 0; lane < lanes; ++lane) bounds.extend(block.bearings.point(lane));
-  block.centre = bounds.centre();
-  for (std::size_t lane = 0; lane < lanes; ++lane)
-    block.radius_m = std::max(block.radius_m, glm::length(block.bearings.point(lane) - block.centre) + block.bearings.reach_m[lane]);
-  for (std::size_t lane = lanes; lane < kLanes; ++lane) block.corner_depth_m[lane] = 1.0;  // not 0 / 0
-}
+struct WholePatch : Patch {
+  explicit WholePatch(const Patch& patch) : Patch(patch), radius_m(std::sqrt(radius2_m2(glm::length(vector_area_m2)))) {}
+  double radius_m;
+};
+
+/// Fills blocks lane by lane.
+class BlockBuilder {
+ public:
+  BlockBuilder(std::span<const WholePatch> patches, PartStyle style, const ProjectionFromBox& projection, const EyesOf& from)
+      : style_(style), projection_(projection), from_(from) {
+    take(patches);
+    if (!blocks_.empty()) complete_block();
+    blocks_.shrink_to_fit();
+  }
+
+  std::vector<SampleBlock> blocks() { return std::move(blocks_); }
+
+ private:
+  struct Sphere {
+    Vec3 centre{0.0};
+    double radius_m = 0.0;
+  };
+
+  void take(std::span<const WholePatch> patches) {
+    const Sphere around = sphere_around(patches);
+    if (patches.size() > 1 && around.radius_m <= kCloseShare * distance(around.centre, from_.all)) return add_together(patches, around);
+    if (patches.size() <= kSampleGroup) return add_each(patches);
+    take(patches.first(half_of_groups(patches.size())));
+    take(patches.subspan(half_of_groups(patches.size())));
+  }
+
+  /// Of whole patches: those in a close one are small as seen from its distance (is_small).
+  static Sphere sphere_around(std::span<const WholePatch> patches) {
+    Box bounds;
+    for (const WholePatch& patch : patches) bounds.extend(patch.centre);
+    Sphere sphere{bounds.empty() ? Vec3(0.0) : bounds.centre(), 0.0};
+    for (const WholePatch& patch : patches)
+      sphere.radius_m = std::max(sphere.radius_m, glm::length(patch.centre - sphere.centre) + patch.radius_m);
+    return sphere;
+  }
+
+  void add_each(std::span<const WholePatch> patches) {
+    for (const WholePatch& patch : patches)
+      if (const MostInImage most = projection_.most(patch, style_.double_sided); most.faces)
+        add(patch.centre, most, patch.triangles, most_edges(patch));
+  }
+
+  [[nodiscard]] double most_edges(const Patch& patch) const { return most_edge_pixels(style_.kind) * patch.triangles; }
+
+  // The sums are exact where the nearest is at its corner depth, and never too small deeper down: softening_m2 / depth^2 is the largest.
+  void add_together(std::span<const WholePatch> patches, const Sphere& around) {
+    MostInImage sum{.faces = false, .reach_m = around.radius_m, .corner_depth_m = std::numeric_limits<double>::infinity()};
+    double triangles = 0.0, pixels = 0.0, edge_pixels = 0.0, most_edges_px = 0.0, softening = 0.0;
+    for (const WholePatch& patch : patches) {
+      const MostInImage most = projection_.most(patch, style_.double_sided);
+      if (!most.faces) continue;
+      sum.faces = true;
+      sum.corner_depth_m = std::min(sum.corner_depth_m, most.corner_depth_m);
+      softening = std::max(softening, most.softening_m2 / (most.corner_depth_m * most.corner_depth_m));
+      triangles += patch.triangles;
+      pixels += most.pixels();
+      edge_pixels += most.edge_pixels();
+      most_edges_px += std::min(most.edge_pixels(), most_edges(patch));
+    }
+    if (!sum.faces) return;
+    sum.softening_m2 = softening * sum.corner_depth_m * sum.corner_depth_m;
+    sum.facing_px_m2 = kSummation * pixels * sum.corner_depth_m * (sum.corner_depth_m * sum.corner_depth_m + sum.softening_m2);
+    sum.edges_px_m = kSummation * edge_pixels * sum.corner_depth_m;
+    add(around.centre, sum, triangles, most_edges_px);
+  }
+
+  void add(const Vec3& centre, const MostInImage& most, double triangles, double most_edges_px) {
+    if (blocks_.empty() || lanes_ == kLanes) {
+      if (!blocks_.empty()) complete_block();
+      blocks_.emplace_back();
+      lanes_ = 0;
+    }
+    SampleBlock& block = blocks_.back();
+    block.bearings.set(lanes_, centre, most.reach_m, from_.eyes);
+    block.corner_depth_m[lanes_] = most.corner_depth_m;
+    block.facing_px_m2[lanes_] = most.facing_px_m2;
+    block.softening_m2[lanes_] = most.softening_m2;
+    block.edges_px_m[lanes_] = most.edges_px_m;
+    block.triangles[lanes_] = triangles;
+    block.most_edges_px[lanes_++] = most_edges_px;
+  }
+
+  void complete_block() {
+    SampleBlock& block = blocks_.back();
+    block.bearings.look_from(from_.eyes);
+    Box bounds;
+    for (std::size_t lane = 0; lane < lanes_; ++lane) bounds.extend(block.bearings.point(lane));
+    block.centre = bounds.centre();
+    for (std::size_t lane = 0; lane < lanes_; ++lane)
+      block.radius_m = std::max(block.radius_m, glm::length(block.bearings.point(lane) - block.centre) + block.bearings.reach_m[lane]);
+    for (std::size_t lane = lanes_; lane < kLanes; ++lane) block.corner_depth_m[lane] = 1.0;  // not 0 / 0
+  }
+
+  PartStyle style_;
+  const ProjectionFromBox& projection_;
+  const EyesOf& from_;
+  std::vector<SampleBlock> blocks_;
+  std::size_t lanes_ = 0;  // of the last block
+};
 
 }  // namespace
 
-std::vector<SampleBlock> facing_blocks(std::span<const SurfaceSample> samples, const PlacedMesh& mesh, bool double_sided,
-                                       const ProjectionFromBox& projection, const Box& eyes) {
-  std::vector<SampleBlock> blocks;
-  blocks.reserve((samples.size() + kLanes - 1) / kLanes);  // they are large: nothing is to be moved twice
-  std::size_t lane = kLanes;
-  for (const SurfaceSample& sample : samples) {
-    const Patch patch = mesh.place(sample);
-    const MostInImage most = projection.most(patch, double_sided);
-    if (!most.faces) continue;
-    if (lane == kLanes) {
-      if (!blocks.empty()) enclose(blocks.back(), kLanes);
-      blocks.emplace_back();
-      lane = 0;
-    }
-    set_lane(blocks.back(), lane++, patch, most, eyes);
-  }
-  if (!blocks.empty()) enclose(blocks.back(), lane);
-  blocks.shrink_to_fit();
-  return blocks;
+std::vector<SampleBlock> facing_blocks(std::span<const SurfaceSample> samples, const PlacedMesh& mesh, PartStyle style,
+                                       const ProjectionFromBox& projection, const EyesOf& from) {
+  std::vector<WholePatch> patches;
+  patches.reserve(samples.size());
+  for (const SurfaceSample& sample : samples) patches.emplace_back(mesh.place(sample));
+  return BlockBuilder(patches, style, projection, from).blocks();
 }
 
-PartSum most_in_gaze(std::span<const SampleBlock> blocks, PixelKind kind, const Gaze& gaze, double cos_corner) {
-  Lanes triangles(0.0), edge_pixels(0.0), pixels(0.0);
+STANDIN_VECTOR_CLONES PartSum most_in_gaze(std::span<const SampleBlock> blocks, const Gaze& gaze, double cos_corner) {
+  LaneRow triangles{}, edge_pixels{}, pixels{}, least_cosine;
   for (const SampleBlock& block : blocks) {
     const auto planes = gaze.planes_across(block.centre, block.radius_m);
     if (!planes) continue;
-    const LaneRow least_cosine = gaze.least_cosines(block.bearings, *planes);
-    for (std::size_t lane = 0; lane < kLanes; lane += Lanes::size()) {
-      const Lanes cosine = lanes_at(least_cosine, lane);
-      const Lanes depth_m = stdx::max(cosine / cos_corner, Lanes(1.0)) * lanes_at(block.corner_depth_m, lane);
-      Lanes some = lanes_at(block.triangles, lane);
-      stdx::where(cosine <= 0.0, some) = 0.0;
-      triangles += some;
-      edge_pixels += stdx::min(lanes_at(block.edges_px_m, lane) / depth_m, most_edge_pixels(kind) * some);
-      some = lanes_at(block.facing_px_m2, lane) / (depth_m * (depth_m * depth_m + lanes_at(block.softening_m2, lane)));
-      stdx::where(cosine <= 0.0, some) = 0.0;
-      pixels += some;
+    gaze.least_cosines(block.bearings, *planes, least_cosine);
+    for (std::size_t i = 0; i < kLanes; ++i) {
+      const double seen = least_cosine[i] > 0.0 ? 1.0 : 0.0;
+      const double depth_m = std::max(least_cosine[i] / cos_corner, 1.0) * block.corner_depth_m[i];
+      triangles[i] += seen * block.triangles[i];
+      edge_pixels[i] += seen * std::min(block.edges_px_m[i] / depth_m, block.most_edges_px[i]);
+      pixels[i] += seen * block.facing_px_m2[i] / (depth_m * (depth_m * depth_m + block.softening_m2[i]));
     }
   }
-  // An estimate adds them up in another order.
-  constexpr double kSummation = 1.0 + 1e-12;
-  return {kSummation * stdx::reduce(triangles), kSummation * stdx::reduce(edge_pixels), stdx::reduce(pixels)};
+  const auto sum = [](const LaneRow& row) { return std::accumulate(row.begin(), row.end(), 0.0); };
+  return {kSummation * sum(triangles), kSummation * sum(edge_pixels), sum(pixels)};
 }
 
 }  // namespace standin

@@ -1,4 +1,7 @@
 // What the samples of an object may show at most to eyes in a box, prepared once per 3D cell and asked about its many gazes.
+//
+// Samples that lie close together as seen from afar are asked about as one: their sums at the depth of the nearest, seen where any point
+// of a sphere around them is. That is still a bound, looser by what the sphere's angle adds to theirs, and most of a city is far away.
 #pragma once
 
 #include <span>
@@ -11,20 +14,33 @@
 
 namespace standin {
 
-/// Samples that lie within a sphere, a lane each. Empty lanes show nothing.
+/// Samples, or close groups of them, that lie within a sphere, a lane each. Empty lanes show nothing.
 struct SampleBlock {
   Vec3 centre{0.0};  // relative to the middle of the eyes
   double radius_m = 0.0;
   Bearings bearings;
   LaneRow corner_depth_m{}, facing_px_m2{}, softening_m2{}, edges_px_m{}, triangles{};  // as in MostInImage
+  LaneRow most_edges_px{};                                                              // however deep
+};
+
+/// How a part is drawn.
+struct PartStyle {
+  PixelKind kind = PixelKind::kPlain;
+  bool double_sided = false;
+};
+
+/// Where samples are looked at from.
+struct EyesOf {
+  Box eyes;
+  Box all;  // holds the eyes: what is close as seen from all of it is taken together, so that fewer eyes never see more
 };
 
 /// Those that face some eye, in blocks of neighbours.
-[[nodiscard]] std::vector<SampleBlock> facing_blocks(std::span<const SurfaceSample> samples, const PlacedMesh& mesh, bool double_sided,
-                                                     const ProjectionFromBox& projection, const Box& eyes);
+[[nodiscard]] std::vector<SampleBlock> facing_blocks(std::span<const SurfaceSample> samples, const PlacedMesh& mesh, PartStyle style,
+                                                     const ProjectionFromBox& projection, const EyesOf& from);
 
 /// The most that samples may show to any view of a gaze.
-[[nodiscard]] PartSum most_in_gaze(std::span<const SampleBlock> blocks, PixelKind kind, const Gaze& gaze, double cos_corner);
+[[nodiscard]] PartSum most_in_gaze(std::span<const SampleBlock> blocks, const Gaze& gaze, double cos_corner);
 
 struct ObjectFromBox {
   struct Part {

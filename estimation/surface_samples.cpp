@@ -80,7 +80,7 @@ void group(std::span<SurfaceSample> samples) {
   for (const SurfaceSample& sample : samples) bounds.extend(sample.point);
   const Vec3 size = bounds.size();
   const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
-  const std::size_t half = (samples.size() / kSampleGroup + 1) / 2 * kSampleGroup;
+  const std::size_t half = half_of_groups(samples.size());
   std::ranges::stable_sort(samples, {}, [axis](const SurfaceSample& sample) { return sample.point[axis]; });
   group(samples.first(half));
   group(samples.subspan(half));

@@ -29,6 +29,10 @@ struct SurfaceSamples {
 
 inline constexpr std::uint32_t kNearFactor = 16;
 inline constexpr std::size_t kSampleGroup = 16;
+/// Of `count` neighbours so many are neighbours, too, and so is the rest; and so on, down to single groups.
+[[nodiscard]] constexpr std::size_t half_of_groups(std::size_t count) {
+  return (count / kSampleGroup + 1) / 2 * kSampleGroup;
+}
 /// `count` >= 1 samples and kNearFactor times as many near ones, each set adding up to the mesh's area, edges and triangles; none for a
 /// mesh without triangles.
 [[nodiscard]] SurfaceSamples sample_surface(const Mesh& mesh, std::uint32_t count);

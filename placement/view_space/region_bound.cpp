@@ -116,7 +116,7 @@ RegionBound RegionEstimator::region_bound(CellCosts& cell, const DirectionInterv
 
 Cost RegionEstimator::cost_in(CellCosts& cell, std::uint32_t index, const Gaze& gaze) const {
   auto& samples = cell.samples[index];
-  if (!samples) samples = features_.from_box(cell.objects[index].object, cell.chain.front());
+  if (!samples) samples = features_.from_box(cell.objects[index].object, {cell.chain.front(), cell.chain.back()});
   return model_->cost(features_.bound(*samples, gaze));
 }
 

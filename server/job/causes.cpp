@@ -31,7 +31,7 @@ CauseShares shares_of(const World& world, const FeatureTable& table, const Subdi
   const Gaze gaze(enclosing_cone(subdivision.intervals[cpv.interval], world.camera), box, world.camera);
   CauseShares shares;
   for (const auto& term : subdivision.terms_of(cpv))
-    shares.add(table.bound(table.from_box(term.object, box), gaze), model, cpv.pixels_capped);
+    shares.add(table.bound(table.from_box(term.object, {box, box}), gaze), model, cpv.pixels_capped);
   if (cpv.pixels_capped) shares.pixels_ms += model.most_pixel_ms(table.pixel_terms(), table.most_passed_pixels());
   return shares;
 }

@@ -370,8 +370,8 @@ TEST(Bound, OfAGazeLiesBetweenItsViewsAndAnyDirection) {
       const Box eyes = box_around(eye, rng), more_eyes = larger(eyes, rng);
       const DirectionCone cone = enclosing_cone(interval_of(view.direction, static_cast<int>(rng.below(6))), camera);
       const Features estimate = table.estimate(object, PreparedView(view, camera));
-      const Features of_gaze = table.bound(table.from_box(object, eyes), Gaze(cone, eyes, camera));
-      const Features of_larger = table.bound(table.from_box(object, more_eyes), Gaze(cone, more_eyes, camera));
+      const Features of_gaze = table.bound(table.from_box(object, {eyes, more_eyes}), Gaze(cone, eyes, camera));
+      const Features of_larger = table.bound(table.from_box(object, {more_eyes, more_eyes}), Gaze(cone, more_eyes, camera));
       const Features of_any = table.bound(object, eyes);
       seen += estimate[Term::kOnScreenTriangles] > 0.0 ? 1 : 0;
       sharper += of_gaze[Term::kEdgePixels] < 0.99 * of_any[Term::kEdgePixels] ? 1 : 0;
@@ -393,12 +393,43 @@ TEST(Bound, OfAGazeCountsThePartInFront) {
   const FeatureTable table(scene, kCamera);
   const auto share = [&](double height_m, const Vec3& direction) {
     const DirectionCone cone = enclosing_cone(interval_of(direction, 5), kCamera);
-    const Features bound = table.bound(table.from_box(0, eye_at(height_m)), Gaze(cone, eye_at(height_m), kCamera));
+    const Features bound = table.bound(table.from_box(0, {eye_at(height_m), eye_at(height_m)}), Gaze(cone, eye_at(height_m), kCamera));
     return bound[Term::kOnScreenTriangles] / bound[Term::kTriangles];
   };
   // 45 degrees of view and 2.8 of directions of all around; a patch nearer than its size counts wherever it is.
   EXPECT_NEAR(share(1.7, {1.0, 0.02, -0.02}), 47.8 / 360.0, 0.05);
   EXPECT_EQ(share(10.0, {0.01, 0.02, 1.0}), 0.0);
+}
+
+// As seen from `all`, a close group of samples is one; from a box around the object itself, none is.
+TEST(Bound, OfCloseSamplesTogetherIsHardlyLooser) {
+  int together = 0;
+  for (std::uint64_t seed = 0; seed < 200; ++seed) {
+    Rng rng(seed, 12);
+    const Scene scene = random_scene(rng);
+    const FeatureTable table(scene, kCamera);
+    const auto object = static_cast<std::uint32_t>(rng.below(scene.objects.size()));
+    const Box& bounds = scene.objects[object].bounds;
+    const Vec3 eye = bounds.centre() + std::pow(10.0, rng.uniform(0.5, 2.5)) * bounds.diagonal() * random_unit(rng);
+    const Box eyes = box_around(eye, rng);
+    Box everywhere = eyes;
+    everywhere.extend(bounds.min), everywhere.extend(bounds.max);
+    const DirectionCone cone = enclosing_cone(interval_of(glm::normalize(bounds.centre() - eye), 4), kCamera);
+    const ObjectFromBox close = table.from_box(object, {eyes, eyes}), each = table.from_box(object, {eyes, everywhere});
+    const auto blocks = [](const ObjectFromBox& from) {
+      std::size_t count = 0;
+      for (const auto& part : from.parts) count += part.samples.size();
+      return count;
+    };
+    together += blocks(close) < blocks(each) ? 1 : 0;
+    const Gaze gaze(cone, eyes, kCamera);
+    const Features of_close = table.bound(close, gaze), of_each = table.bound(each, gaze);
+    for (std::size_t t = 0; t < kTermCount; ++t) {
+      ASSERT_GE(of_close.value[t], of_each.value[t] * (1.0 - 1e-9)) << term_name(static_cast<Term>(t)) << ", seed " << seed;
+      ASSERT_LE(of_close.value[t], of_each.value[t] * 1.05) << term_name(static_cast<Term>(t)) << ", seed " << seed;
+    }
+  }
+  EXPECT_GT(together, 50);
 }
 
 TEST(Bound, OfAFarFacingSquareIsItsImageAtTheCorner) {

@@ -42,8 +42,10 @@ struct SeenPoint {
 std::optional<double> least_cosine(const Gaze& gaze, const Vec3& point, double reach_m, const Box& eyes) {
   Bearings one;
   one.set(3, point, reach_m, eyes);
-  const double cosine = gaze.least_cosines(one)[3];
-  return cosine > 0.0 ? std::optional(cosine) : std::nullopt;
+  one.look_from(eyes);
+  LaneRow cosines;
+  gaze.least_cosines(one, ~0U, cosines);
+  return cosines[3] > 0.0 ? std::optional(cosines[3]) : std::nullopt;
 }
 
 TEST(Gaze, HoldsEveryPointThatAViewOfTheRegionSees) {
