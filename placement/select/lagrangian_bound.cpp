@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <utility>
 
@@ -20,9 +21,11 @@ constexpr double kWorthwhileGain = 1e-3;  // of the known solution's bytes, by k
 constexpr float kKept = 0.95F;            // of the use so far, each time a constraint is visited
 constexpr float kLeastShare = 0.005F;
 
-// All sweeps together pass over so many gains at most, some twenty seconds: with a thousand million of them the bound would take longer
-// than everything it judges. The first sweeps gain most of it.
-constexpr std::uint64_t kMostGains = 200'000'000;
+// All sweeps of one search pass over so many gains at most, some ten seconds. The first sweeps gain most of it.
+constexpr std::uint64_t kMostGains = 100'000'000;
+constexpr std::size_t kLeastTightest = 4;  // constraints of each member, before more of them may be found not to be worth it
+// Constraints with so many gains are enough of them.
+constexpr std::uint64_t kMostBoundGains = 2'000'000;
 
 int affordable_sweeps(std::uint64_t gains, int asked) {
   return static_cast<int>(std::min(static_cast<std::uint64_t>(std::max(asked, 0)), kMostGains / std::max<std::uint64_t>(gains, 1)));
@@ -30,8 +33,7 @@ int affordable_sweeps(std::uint64_t gains, int asked) {
 
 }  // namespace
 
-BytesSplit::BytesSplit(const SelectionProblem& problem, const TreeOrder& order, const Columns& columns, const std::vector<bool>& ignored,
-                       std::uint64_t most_gains)
+BytesSplit::BytesSplit(const SelectionProblem& problem, const TreeOrder& order, const Columns& columns)
     : problem_(problem),
       columns_(columns),
       column_(problem, order),
@@ -43,28 +45,21 @@ BytesSplit::BytesSplit(const SelectionProblem& problem, const TreeOrder& order, 
       mean_use_(problem.candidate_count(), 0.0),
       shrink_(problem.candidate_count(), 1.0),
       used_(problem.candidate_count(), 0.0F) {
-  for (std::uint32_t q = 0; q < problem.deficit.size(); ++q)
-    if (problem.deficit[q] > kLeastDeficit && (ignored.empty() || !ignored[q / problem.stages])) active_.push_back(q);
-  if (most_gains < UINT64_MAX) thin_out(most_gains);
-  for (const std::uint32_t q : active_) {
+  keep_as_best();
+}
+
+void BytesSplit::add(std::span<const std::uint32_t> constraints) {
+  std::vector<std::uint32_t> added;
+  std::ranges::set_difference(constraints, active_, std::back_inserter(added));
+  std::erase_if(added, [this](std::uint32_t q) { return !(problem_.deficit[q] > kLeastDeficit); });
+  for (const std::uint32_t q : added) {
     load(q);
     gains_ += column_.size();
     for (std::uint32_t i = 0; i < column_.size(); ++i) ++demands_[column_.candidate(i)];
   }
-  keep_as_best();
-}
-
-void BytesSplit::thin_out(std::uint64_t most_gains) {
-  std::uint64_t gains = 0;
-  for (const std::uint32_t q : active_) {
-    load(q);
-    gains += column_.size();
-  }
-  const std::uint64_t step = (gains + most_gains - 1) / std::max<std::uint64_t>(most_gains, 1);
-  if (step <= 1) return;
-  std::vector<std::uint32_t> kept;
-  for (std::size_t i = 0; i < active_.size(); i += step) kept.push_back(active_[i]);
-  active_ = std::move(kept);
+  const auto before = static_cast<std::ptrdiff_t>(active_.size());
+  active_.insert(active_.end(), added.begin(), added.end());
+  std::inplace_merge(active_.begin(), active_.begin() + before, active_.end());
 }
 
 void BytesSplit::load(std::uint32_t q) {
@@ -242,12 +237,26 @@ bool improve(BytesSplit& split, double aim_bytes, int iterations, const WorkBudg
   return finished;
 }
 
-double lagrangian_bound(const SelectionProblem& problem, const TreeOrder& order, const Columns& columns, const std::vector<bool>& ignored,
-                        double aim_bytes, int iterations, const WorkBudget& budget) {
-  BytesSplit split(problem, order, columns, ignored, kMostBoundGains);
-  SelectionWork without_limit;
-  improve(split, aim_bytes, iterations, budget, without_limit);
-  return split.certified(budget);
+std::vector<std::uint32_t> constraints_of(const SelectionProblem& problem, const std::vector<bool>& ignored) {
+  std::vector<std::uint32_t> constraints;
+  for (std::uint32_t q = 0; q < problem.deficit.size(); ++q)
+    if (ignored.empty() || !ignored[q / problem.stages]) constraints.push_back(q);
+  return constraints;
+}
+
+LowerBound lower_bound(const SelectionProblem& problem, const TreeOrder& order, const Columns& columns, const TightRows& rows,
+                       double known_bytes, int iterations, const WorkBudget& budget, SelectionWork& work) {
+  BytesSplit split(problem, order, columns);
+  LowerBound bound;
+  for (std::size_t count = 1; bound.finished; count *= 2) {
+    const double before = split.best_value();
+    split.add(rows.tightest(count));
+    bound.finished = improve(split, known_bytes, iterations, budget, work);
+    const bool gained = split.best_value() - before >= kWorthwhileGain * known_bytes;
+    if (count >= rows.most() || split.gains() >= kMostBoundGains || (count >= kLeastTightest && !gained)) break;
+  }
+  bound.bytes = split.certified(budget);
+  return bound;
 }
 
 }  // namespace standin

@@ -20,16 +20,19 @@
 #include "placement/select/priced_column.h"
 #include "placement/select/selection_work.h"
 #include "placement/select/serving.h"
+#include "placement/select/tight_rows.h"
 #include "render/base/work.h"
 
 namespace standin {
 
 class BytesSplit {
  public:
-  /// Rows of CPVs with `ignored[p]` are dropped; and of others all but every so manieth, where they have more than `most_gains`: the bound
-  /// holds for all of them, since it holds for any part.
-  BytesSplit(const SelectionProblem& problem, const TreeOrder& order, const Columns& columns, const std::vector<bool>& ignored,
-             std::uint64_t most_gains = UINT64_MAX);
+  /// Of no constraint yet.
+  BytesSplit(const SelectionProblem& problem, const TreeOrder& order, const Columns& columns);
+
+  /// Constraints that are to pay, too: ascending; those that are there already, or ask for nothing, change nothing. The best split so far
+  /// stays one.
+  void add(std::span<const std::uint32_t> constraints);
 
   /// One sweep, forwards and backwards in turn; returns the bound that the split now gives, without its rounding error.
   double sweep(const WorkBudget& budget);
@@ -55,7 +58,6 @@ class BytesSplit {
     float share = 0.0F;
   };
 
-  void thin_out(std::uint64_t most_gains);
   void load(std::uint32_t q);
   [[nodiscard]] double payment(const PricedColumn::Group& group, std::uint32_t position) const;
   template <class Visit>
@@ -91,15 +93,20 @@ class BytesSplit {
   std::uint64_t work_ = 0;
 };
 
-/// Of a split for a bound alone: ten sweeps of it, at least, stay within some twenty seconds.
-inline constexpr std::uint64_t kMostBoundGains = 20'000'000;
-
 /// Sweeps and steps on the best split; `aim_bytes`: of a known solution (it scales the steps). Fewer than `iterations` are made on
 /// very large problems, and where the latest ones gained next to nothing of these bytes. Returns false when the work limit ended it.
 bool improve(BytesSplit& split, double aim_bytes, int iterations, const WorkBudget& budget, SelectionWork& work);
 
-/// Never above the optimum: rounding is charged to the bound.
-[[nodiscard]] double lagrangian_bound(const SelectionProblem& problem, const TreeOrder& order, const Columns& columns,
-                                      const std::vector<bool>& ignored, double aim_bytes, int iterations, const WorkBudget& budget);
+/// All constraints but those of CPVs with `ignored[p]` (none given: none).
+[[nodiscard]] std::vector<std::uint32_t> constraints_of(const SelectionProblem& problem, const std::vector<bool>& ignored);
+
+struct LowerBound {
+  double bytes = 0.0;    // never above the optimum: rounding is charged to it
+  bool finished = true;  // false: the work limit ended it
+};
+/// By the tightest constraints of a known solution of `known_bytes`, then by twice as many, and so on, as long as that gains anything and
+/// is affordable: the best split of few constraints is found soon, and the search goes on from there.
+[[nodiscard]] LowerBound lower_bound(const SelectionProblem& problem, const TreeOrder& order, const Columns& columns, const TightRows& rows,
+                                     double known_bytes, int iterations, const WorkBudget& budget, SelectionWork& work);
 
 }  // namespace standin

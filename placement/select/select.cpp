@@ -49,12 +49,11 @@ class Selector {
     return std::move(result_);
   }
 
-  double lower_bound(double known_bytes) {
+  double lower_bound(const Selection& known) {
     cover_ = std::make_unique<Cover>(problem_, order_);
+    for (const std::uint32_t candidate : known.chosen) cover_->add(candidate);
     set_aside();
-    BytesSplit split(problem_, order_, columns_, ignored_, kMostBoundGains);
-    improve(split, known_bytes, config_.bound_iterations, budget_, work_);
-    return split.certified(budget_);
+    return bound().bytes;
   }
 
  private:
@@ -116,7 +115,8 @@ class Selector {
     if (config_.guided_sweeps == 0 || cover_->members().empty()) return;
     step("second greedy", [&] {
       if (work_.exhausted()) return false;
-      BytesSplit split(problem_, order_, columns_, ignored_);
+      BytesSplit split(problem_, order_, columns_);
+      split.add(constraints_of(problem_, ignored_));
       if (split.gains() > kMostGuidedGains) return true;
       const double first_bytes = bytes();
       if (!improve(split, first_bytes, config_.guided_sweeps, budget_, work_)) return false;
@@ -189,18 +189,23 @@ class Selector {
     SelectionSummary& summary = result_.summary;
     summary.bytes = bytes();
     const bool greedy_cut_short = !summary.cut_short.empty() && summary.cut_short.front().step == "greedy";
-    if (config_.bound_iterations > 0 && !greedy_cut_short) bound();
+    if (config_.bound_iterations > 0 && !greedy_cut_short) {
+      const LowerBound found = bound();
+      summary.lower_bound_bytes = found.bytes;
+      if (!found.finished) summary.cut_short.push_back({"lower bound", summary.bytes, summary.bytes});
+    }
     summary.gains = work_.gains() - config_.gains_before;
     using Stop = SelectionSummary::Stop;
     summary.stop = greedy_cut_short ? Stop::kGreedyCutShort : summary.unmet.empty() ? Stop::kAllMet : Stop::kSomeUnreachable;
     summary.message = met_message() + limit_message();
   }
 
-  void bound() {
-    BytesSplit split(problem_, order_, columns_, ignored_, kMostBoundGains);
-    if (!improve(split, result_.summary.bytes, config_.bound_iterations, budget_, work_))
-      result_.summary.cut_short.push_back({"lower bound", result_.summary.bytes, result_.summary.bytes});
-    result_.summary.lower_bound_bytes = split.certified(budget_);
+  [[nodiscard]] LowerBound bound() {
+    TightRows rows(problem_);
+    for (std::uint32_t p = 0; p < problem_.cpv_count(); ++p)
+      if (!ignored_[p]) rows.see(p, cover_->best(p).members);
+    rows.sort();
+    return standin::lower_bound(problem_, order_, columns_, rows, bytes(), config_.bound_iterations, budget_, work_);
   }
 
   [[nodiscard]] std::string met_message() const {
@@ -274,9 +279,9 @@ Selection select_impostors(const SelectionProblem& problem, const SelectionConfi
   return Selector(problem, config, budget).run(initial);
 }
 
-double memory_lower_bound(const SelectionProblem& problem, double known_bytes, const SelectionConfig& config, const WorkBudget& budget) {
+double memory_lower_bound(const SelectionProblem& problem, const Selection& known, const SelectionConfig& config, const WorkBudget& budget) {
   validate(problem);
-  return Selector(problem, config, budget).lower_bound(known_bytes);
+  return Selector(problem, config, budget).lower_bound(known);
 }
 
 }  // namespace standin

@@ -143,9 +143,9 @@ struct SelectionConfig {
 [[nodiscard]] Selection select_impostors(const SelectionProblem& problem, const SelectionConfig& config,
                                          std::span<const std::uint32_t> initial, const WorkBudget& budget);
 
-/// Lower bound on the bytes of any selection that meets every reachable CPV, from `config.bound_iterations` steps. `known_bytes`: of a
-/// known selection.
-[[nodiscard]] double memory_lower_bound(const SelectionProblem& problem, double known_bytes, const SelectionConfig& config,
+/// Lower bound on the bytes of any selection that meets every reachable CPV, from `config.bound_iterations` steps at a time. `known`: a
+/// selection; the bound looks at what is tight in it.
+[[nodiscard]] double memory_lower_bound(const SelectionProblem& problem, const Selection& known, const SelectionConfig& config,
                                         const WorkBudget& budget);
 
 }  // namespace standin

@@ -222,14 +222,14 @@ class Rounds {
     if (bound_iterations > 0) {
       spend_nothing_on_unmet();
       for (const auto id : result_.selection.chosen) result_.as_selected.bytes += problem_.bytes[id];
-      result_.as_selected.lower_bound_bytes = memory_lower_bound(problem_, result_.as_selected.bytes, config, budget_);
+      result_.as_selected.lower_bound_bytes = memory_lower_bound(problem_, result_.selection, config, budget_);
     }
     update({});
     result_.shown = show_fewest(problem_, result_.selection, budget_);
     if (bound_iterations > 0) {
       spend_nothing_on_unmet();
       set_least_bytes();
-      summary.lower_bound_bytes = memory_lower_bound(problem_, summary.bytes, config, budget_);
+      summary.lower_bound_bytes = memory_lower_bound(problem_, result_.selection, config, budget_);
     }
     collect(result_, baker_);
     return std::move(result_);

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdio>
+#include <numeric>
 
 #include "placement/select/lagrangian_bound.h"
 #include "tests/support/selection_brute_force.h"
@@ -10,9 +11,19 @@
 namespace standin::test {
 namespace {
 
-double bound_of(const SelectionProblem& problem, double upper_bytes, int iterations) {
+/// By the given constraints.
+double bound_by(const SelectionProblem& problem, std::span<const std::uint32_t> constraints, double upper_bytes, int iterations) {
   const TreeOrder order(problem.parent);
-  return lagrangian_bound(problem, order, Columns(problem, order), {}, upper_bytes, iterations, {});
+  const Columns columns(problem, order);
+  BytesSplit split(problem, order, columns);
+  split.add(constraints);
+  SelectionWork work;
+  (void)improve(split, upper_bytes, iterations, {}, work);
+  return split.certified({});
+}
+
+double bound_of(const SelectionProblem& problem, double upper_bytes, int iterations) {
+  return bound_by(problem, constraints_of(problem, {}), upper_bytes, iterations);
 }
 
 TEST(LagrangianBound, NeverAboveTheOptimum) {
@@ -34,23 +45,71 @@ TEST(LagrangianBound, NeverAboveTheOptimum) {
   std::printf("%d instances, mean bound / optimum %.3f\n", count, sum_ratio / count);
 }
 
-TEST(LagrangianBound, HoldsWhereOnlySomeRowsAreLookedAt) {
-  int thinned = 0;
+TEST(LagrangianBound, HoldsWhereOnlySomeConstraintsAreLookedAt) {
+  int lower = 0;
   for (std::uint64_t seed = 1; seed <= 100; ++seed) {
     const auto problem = random_problem(seed, {.cpvs = 4, .stages = 1, .integers = false});
     const auto exact = BruteForce(problem).optimum();
     if (!exact) continue;
+    const double some = bound_by(problem, std::vector<std::uint32_t>{1, 3}, exact->bytes, 100);
+    ASSERT_LE(some, exact->bytes) << "seed " << seed;
+    lower += some < 0.99 * bound_of(problem, exact->bytes, 100) ? 1 : 0;
+  }
+  EXPECT_GT(lower, 20);
+}
+
+TEST(LagrangianBound, OfMoreConstraintsIsNeverLower) {
+  for (std::uint64_t seed = 1; seed <= 50; ++seed) {
+    const auto problem = random_problem(seed, {.nodes = 30, .candidates = 80, .cpvs = 20, .integers = false, .demand = 30.0});
     const TreeOrder order(problem.parent);
     const Columns columns(problem, order);
-    BytesSplit all(problem, order, columns, {});
-    BytesSplit some(problem, order, columns, {}, all.gains() / 2);
-    SelectionWork work;
-    (void)improve(some, exact->bytes, 100, {}, work);
-    ASSERT_LE(some.certified({}), exact->bytes) << "seed " << seed;
-    EXPECT_GT(some.certified({}), 0.0) << "seed " << seed;
-    thinned += some.gains() < all.gains() ? 1 : 0;
+    BytesSplit split(problem, order, columns);
+    double before = 0.0;
+    for (const std::uint32_t last : {1U, 4U, 20U}) {
+      std::vector<std::uint32_t> first(last);
+      std::iota(first.begin(), first.end(), 0U);
+      split.add(first);
+      SelectionWork work;
+      (void)improve(split, 300.0, 50, {}, work);
+      ASSERT_GE(split.best_value(), before) << "seed " << seed << ", " << last << " constraints";
+      before = split.best_value();
+    }
+    EXPECT_GT(before, 0.0) << "seed " << seed;
   }
-  EXPECT_GT(thinned, 20);
+}
+
+// Deficits 2 and 3 of two members; the first is used by three CPVs.
+TEST(TightRows, AreThoseWithLeastToSpare) {
+  const auto problem = make_problem({-1, 0, 0}, {{1, 1.0, {{0, {4.0}}, {1, {2.1}}, {2, {3.0}}}}, {2, 1.0, {{2, {3.0}}}}}, {2.0, 2.0, 3.0});
+  TightRows rows(problem);
+  const Columns columns(problem, TreeOrder(problem.parent));
+  for (std::uint32_t p = 0; p < 3; ++p) {
+    std::vector<Serving> all;
+    columns.read(p, all);
+    rows.see(p, all);
+  }
+  rows.sort();
+  EXPECT_EQ(rows.most(), 3U);
+  EXPECT_EQ(rows.tightest(1), (std::vector<std::uint32_t>{1, 2}));  // 1.05 of CPV 1; 2 of CPV 2 is all that the second member has
+  EXPECT_EQ(rows.tightest(3), (std::vector<std::uint32_t>{0, 1, 2}));
+}
+
+TEST(MemoryLowerBound, ByTheTightRowsOfTheOptimumIsNearIt) {
+  double sum_ratio = 0.0;
+  int count = 0;
+  for (std::uint64_t seed = 1; seed <= 200; ++seed) {
+    const auto problem = random_problem(seed, {.cpvs = 3, .stages = seed % 2 == 0 ? 1U : 3U, .integers = false});
+    const auto exact = BruteForce(problem).optimum();
+    if (!exact) continue;
+    Selection known;
+    known.chosen = exact->set;
+    const double bound = memory_lower_bound(problem, known, {}, {});
+    ASSERT_LE(bound, exact->bytes) << "seed " << seed;
+    sum_ratio += bound / exact->bytes;
+    ++count;
+  }
+  EXPECT_GT(count, 50);
+  EXPECT_GT(sum_ratio / count, 0.8);
 }
 
 TEST(LagrangianBound, TightForOneCpvOfEqualCandidates) {
@@ -114,10 +173,8 @@ TEST(LagrangianBound, MoreStepsNeverLowerIt) {
 
 TEST(LagrangianBound, IgnoredCpvsDoNotCount) {
   const auto problem = make_problem({-1, 0, 0}, {{1, 2.0, {{0, {2.0}}}}, {2, 7.0, {{1, {2.0}}}}}, {2.0, 2.0});
-  const TreeOrder order(problem.parent);
-  const Columns columns(problem, order);
-  EXPECT_NEAR(lagrangian_bound(problem, order, columns, {false, false}, 9.0, 100, {}), 9.0, 1e-6);
-  EXPECT_NEAR(lagrangian_bound(problem, order, columns, {false, true}, 2.0, 100, {}), 2.0, 1e-6);
+  EXPECT_NEAR(bound_by(problem, constraints_of(problem, {false, false}), 9.0, 100), 9.0, 1e-6);
+  EXPECT_NEAR(bound_by(problem, constraints_of(problem, {false, true}), 2.0, 100), 2.0, 1e-6);
 }
 
 }  // namespace
