@@ -244,19 +244,15 @@ std::vector<std::uint32_t> constraints_of(const SelectionProblem& problem, const
   return constraints;
 }
 
-LowerBound lower_bound(const SelectionProblem& problem, const TreeOrder& order, const Columns& columns, const TightRows& rows,
-                       double known_bytes, int iterations, const WorkBudget& budget, SelectionWork& work) {
-  BytesSplit split(problem, order, columns);
-  LowerBound bound;
-  for (std::size_t count = 1; bound.finished; count *= 2) {
+bool improve_by(const TightRows& rows, BytesSplit& split, double known_bytes, int iterations, const WorkBudget& budget,
+                SelectionWork& work) {
+  for (std::size_t count = 1;; count *= 2) {
     const double before = split.best_value();
     split.add(rows.tightest(count));
-    bound.finished = improve(split, known_bytes, iterations, budget, work);
+    if (!improve(split, known_bytes, iterations, budget, work)) return false;
     const bool gained = split.best_value() - before >= kWorthwhileGain * known_bytes;
-    if (count >= rows.most() || split.gains() >= kMostBoundGains || (count >= kLeastTightest && !gained)) break;
+    if (count >= rows.most() || split.gains() >= kMostBoundGains || (count >= kLeastTightest && !gained)) return true;
   }
-  bound.bytes = split.certified(budget);
-  return bound;
 }
 
 }  // namespace standin

@@ -100,13 +100,9 @@ bool improve(BytesSplit& split, double aim_bytes, int iterations, const WorkBudg
 /// All constraints but those of CPVs with `ignored[p]` (none given: none).
 [[nodiscard]] std::vector<std::uint32_t> constraints_of(const SelectionProblem& problem, const std::vector<bool>& ignored);
 
-struct LowerBound {
-  double bytes = 0.0;    // never above the optimum: rounding is charged to it
-  bool finished = true;  // false: the work limit ended it
-};
-/// By the tightest constraints of a known solution of `known_bytes`, then by twice as many, and so on, as long as that gains anything and
-/// is affordable: the best split of few constraints is found soon, and the search goes on from there.
-[[nodiscard]] LowerBound lower_bound(const SelectionProblem& problem, const TreeOrder& order, const Columns& columns, const TightRows& rows,
-                                     double known_bytes, int iterations, const WorkBudget& budget, SelectionWork& work);
+/// Lets the tightest constraints of a known solution of `known_bytes` pay, then twice as many, and so on, as long as that gains anything
+/// and is affordable: the best split of few constraints is found soon, and the search goes on from there. `iterations`: of improve(), each
+/// time. Returns false when the work limit ended it.
+bool improve_by(const TightRows& rows, BytesSplit& split, double known_bytes, int iterations, const WorkBudget& budget, SelectionWork& work);
 
 }  // namespace standin

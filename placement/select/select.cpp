@@ -13,10 +13,8 @@
 namespace standin {
 namespace {
 
-// A second greedy looks at the gains several times: with more of them it is left out.
-constexpr std::uint64_t kMostGuidedGains = 100'000'000;
-// Its prices: bytes that no region pays for, and this share of all bytes.
-constexpr double kShareOfBytes = 0.5;
+// Prices of the second greedy: bytes that no region pays for, and this share of all bytes.
+constexpr double kShareOfBytes = 0.25;
 
 class Selector {
  public:
@@ -53,7 +51,7 @@ class Selector {
     cover_ = std::make_unique<Cover>(problem_, order_);
     for (const std::uint32_t candidate : known.chosen) cover_->add(candidate);
     set_aside();
-    return bound().bytes;
+    return bound();
   }
 
  private:
@@ -116,10 +114,8 @@ class Selector {
     step("second greedy", [&] {
       if (work_.exhausted()) return false;
       BytesSplit split(problem_, order_, columns_);
-      split.add(constraints_of(problem_, ignored_));
-      if (split.gains() > kMostGuidedGains) return true;
       const double first_bytes = bytes();
-      if (!improve(split, first_bytes, config_.guided_sweeps, budget_, work_)) return false;
+      if (!improve_by(tight_rows(), split, first_bytes, config_.guided_sweeps, budget_, work_)) return false;
       std::vector<double> price(problem_.candidate_count());
       for (std::uint32_t c = 0; c < price.size(); ++c)
         price[c] = kShareOfBytes * problem_.bytes[c] + std::max(0.0, split.unclaimed_bytes(c));
@@ -189,23 +185,26 @@ class Selector {
     SelectionSummary& summary = result_.summary;
     summary.bytes = bytes();
     const bool greedy_cut_short = !summary.cut_short.empty() && summary.cut_short.front().step == "greedy";
-    if (config_.bound_iterations > 0 && !greedy_cut_short) {
-      const LowerBound found = bound();
-      summary.lower_bound_bytes = found.bytes;
-      if (!found.finished) summary.cut_short.push_back({"lower bound", summary.bytes, summary.bytes});
-    }
+    if (config_.bound_iterations > 0 && !greedy_cut_short) summary.lower_bound_bytes = bound();
     summary.gains = work_.gains() - config_.gains_before;
     using Stop = SelectionSummary::Stop;
     summary.stop = greedy_cut_short ? Stop::kGreedyCutShort : summary.unmet.empty() ? Stop::kAllMet : Stop::kSomeUnreachable;
     summary.message = met_message() + limit_message();
   }
 
-  [[nodiscard]] LowerBound bound() {
+  double bound() {
+    BytesSplit split(problem_, order_, columns_);
+    if (!improve_by(tight_rows(), split, bytes(), config_.bound_iterations, budget_, work_))
+      result_.summary.cut_short.push_back({"lower bound", bytes(), bytes()});
+    return split.certified(budget_);
+  }
+
+  [[nodiscard]] TightRows tight_rows() {
     TightRows rows(problem_);
     for (std::uint32_t p = 0; p < problem_.cpv_count(); ++p)
       if (!ignored_[p]) rows.see(p, cover_->best(p).members);
     rows.sort();
-    return standin::lower_bound(problem_, order_, columns_, rows, bytes(), config_.bound_iterations, budget_, work_);
+    return rows;
   }
 
   [[nodiscard]] std::string met_message() const {

@@ -59,7 +59,7 @@ struct JobSpec {
   std::uint32_t max_layers = 0;  // 0: 200 for walk, 400 for orbit
   bool fuzzy = false;            // masked surfaces without outlines: no image promise where they are
   bool keep_picks = false;
-  int guided_sweeps = 6;
+  int guided_sweeps = 30;
   int exchange_rounds = 0;
   std::uint64_t recreate_trials = 0;
   std::uint64_t work_limit_gains = 0;  // 0: none
