@@ -6,6 +6,7 @@
 #include <numeric>
 #include <optional>
 #include <queue>
+#include <tuple>
 #include <utility>
 
 namespace standin {
@@ -39,11 +40,29 @@ SurfacePoint centroid(const SurfaceTriangle& t) {
   return (1.0 / 3.0) * (t[0] + t[1] + t[2]);
 }
 
-double distance_to_segment(const SurfacePoint& p, const SurfacePoint& a, const SurfacePoint& b) {
+double distance2_to_segment(const SurfacePoint& p, const SurfacePoint& a, const SurfacePoint& b) {
   const SurfacePoint ab = b - a;
   const double length2 = dot(ab, ab);
   const double t = length2 > 0.0 ? std::clamp(dot(p - a, ab) / length2, 0.0, 1.0) : 0.0;
-  return length(p - (a + t * ab));
+  const SurfacePoint off = p - (a + t * ab);
+  return dot(off, off);
+}
+
+// Ericson, Real-Time Collision Detection 5.1.5: Voronoi regions by dot products alone, which mean the same in any dimension.
+double distance2(const SurfacePoint& point, const SurfaceTriangle& triangle) {
+  const auto& [a, b, c] = triangle;
+  const SurfacePoint ab = b - a, ac = c - a, ap = point - a;
+  const double d00 = dot(ab, ab), d01 = dot(ab, ac), d11 = dot(ac, ac), d20 = dot(ap, ab), d21 = dot(ap, ac);
+  const double denominator = d00 * d11 - d01 * d01;
+  if (denominator > 0.0) {
+    const double v = (d11 * d20 - d01 * d21) / denominator;
+    const double w = (d00 * d21 - d01 * d20) / denominator;
+    if (v >= 0.0 && w >= 0.0 && v + w <= 1.0) {
+      const SurfacePoint off = ap - (v * ab + w * ac);
+      return dot(off, off);
+    }
+  }
+  return std::min({distance2_to_segment(point, a, b), distance2_to_segment(point, b, c), distance2_to_segment(point, c, a)});
 }
 
 bool is_finite(const SurfaceTriangle& triangle) {
@@ -203,18 +222,8 @@ Surface surface_of(const Mesh& mesh, double metres_per_uv) {
   return surface;
 }
 
-// Ericson, Real-Time Collision Detection 5.1.5: Voronoi regions by dot products alone, which mean the same in any dimension.
 double distance(const SurfacePoint& point, const SurfaceTriangle& triangle) {
-  const auto& [a, b, c] = triangle;
-  const SurfacePoint ab = b - a, ac = c - a, ap = point - a;
-  const double d00 = dot(ab, ab), d01 = dot(ab, ac), d11 = dot(ac, ac), d20 = dot(ap, ab), d21 = dot(ap, ac);
-  const double denominator = d00 * d11 - d01 * d01;
-  if (denominator > 0.0) {
-    const double v = (d11 * d20 - d01 * d21) / denominator;
-    const double w = (d00 * d21 - d01 * d20) / denominator;
-    if (v >= 0.0 && w >= 0.0 && v + w <= 1.0) return length(ap - (v * ab + w * ac));
-  }
-  return std::min({distance_to_segment(point, a, b), distance_to_segment(point, b, c), distance_to_segment(point, c, a)});
+  return std::sqrt(distance2(point, triangle));
 }
 
 SurfaceTree::SurfaceTree(const Surface& surface) : order_(surface.triangles.size()) {
@@ -253,35 +262,37 @@ std::uint32_t SurfaceTree::build(std::uint32_t first, std::uint32_t last) {
   return id;
 }
 
-double SurfaceTree::distance2(const Node& node, const SurfacePoint& point) {
+// From the box of a node, squared.
+double SurfaceTree::distance2(const Node& node, const Coordinates& point) {
   double sum = 0.0;
-  for (std::size_t axis = 0; axis < 5; ++axis) {
-    const double x = coordinate(point, axis);
-    const double outside = std::max({node.min[axis] - x, x - node.max[axis], 0.0});
+  for (std::size_t axis = 0; axis < point.size(); ++axis) {
+    const double outside = std::max(std::max(node.min[axis] - point[axis], point[axis] - node.max[axis]), 0.0);
     sum += outside * outside;
   }
   return sum;
 }
 
 SurfaceTree::Nearest SurfaceTree::nearest(const SurfacePoint& point, std::uint32_t guess) const {
-  Nearest best{guess, distance(point, triangles_[guess])};
+  const Coordinates coordinates{point.place.x, point.place.y, point.place.z, point.texture.x, point.texture.y};
+  std::uint32_t best = guess;
+  double best2 = standin::distance2(point, triangles_[guess]);
   std::array<std::pair<double, std::uint32_t>, 72> open;  // halving 2^32 triangles is no deeper than this
   std::size_t size = 0;
-  open[size++] = {distance2(nodes_[0], point), 0U};
+  open[size++] = {distance2(nodes_[0], coordinates), 0U};
   while (size > 0) {
     const auto [near2, id] = open[--size];
-    if (near2 >= best.distance * best.distance) continue;
+    if (near2 >= best2) continue;
     const Node& node = nodes_[id];
     for (std::uint32_t i = node.first; i < node.first + node.count; ++i)
-      if (const double d = distance(point, triangles_[order_[i]]); d < best.distance) best = {order_[i], d};
+      if (const double d2 = standin::distance2(point, triangles_[order_[i]]); d2 < best2) std::tie(best, best2) = std::pair(order_[i], d2);
     if (node.count > 0) continue;
-    std::pair low{distance2(nodes_[id + 1], point), id + 1};
-    std::pair high{distance2(nodes_[node.first], point), node.first};
+    std::pair low{distance2(nodes_[id + 1], coordinates), id + 1};
+    std::pair high{distance2(nodes_[node.first], coordinates), node.first};
     if (high.first < low.first) std::swap(low, high);
     open[size++] = high;
     open[size++] = low;
   }
-  return best;
+  return {best, std::sqrt(best2)};
 }
 
 Deviation deviation(const Surface& from, const SurfaceTree& to, const DeviationLimits& limits) {

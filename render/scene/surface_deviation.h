@@ -58,7 +58,8 @@ class SurfaceTree {
     std::uint32_t count = 0;  // 0: not a leaf
   };
   std::uint32_t build(std::uint32_t first, std::uint32_t last);
-  [[nodiscard]] static double distance2(const Node& node, const SurfacePoint& point);
+  using Coordinates = std::array<double, 5>;
+  [[nodiscard]] static double distance2(const Node& node, const Coordinates& point);
 
   std::vector<SurfaceTriangle> triangles_;
   std::vector<std::uint32_t> order_;
