@@ -4,6 +4,7 @@
 #include <bit>
 #include <limits>
 
+#include "render/base/error.h"
 #include "render/base/vector_clones.h"
 
 namespace standin {
@@ -39,8 +40,8 @@ STANDIN_VECTOR_CLONES void Bearings::look_from(const Box& eyes) {
   for (std::size_t i = 0; i < kLanes; ++i) {
     const double dx = std::max(0.0, std::abs(x[i]) - half.x), dy = std::max(0.0, std::abs(y[i]) - half.y),
                  dz = std::max(0.0, std::abs(z[i]) - half.z);
-    const double farthest_m = std::max(std::sqrt(dx * dx + dy * dy + dz * dz), reach_m[i]);
-    sin_reach[i] = reach_m[i] / std::max(farthest_m, kLeastDistance);
+    const double nearest_m = std::max(std::sqrt(dx * dx + dy * dy + dz * dz), reach_m[i]);
+    sin_reach[i] = reach_m[i] / std::max(nearest_m, kLeastDistance);
     cos_reach[i] = sine(sin_reach[i]);
   }
 }
@@ -50,6 +51,8 @@ Gaze::Gaze(const DirectionCone& cone, const Box& eyes, const Camera& camera) : a
   for (int i = 0; i < 8; ++i) corner_along_[static_cast<std::size_t>(i)] = glm::dot(axis_, eyes.corner(i) - centre);
   sides_.most.fill(std::numeric_limits<double>::infinity());
   std::size_t count = 0;
+  if (cone.plane_normals.size() > sides_.most.size())
+    throw Failure(ErrorWord::kInternal, "gaze: " + std::to_string(cone.plane_normals.size()) + " planes violate <= 16");
   for (const Vec3& normal : cone.plane_normals) {
     sides_.x[count] = normal.x, sides_.y[count] = normal.y, sides_.z[count] = normal.z;
     sides_.most[count++] = (1.0 + kRounding) * glm::dot(glm::abs(normal), half_size);

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <iterator>
 #include <limits>
 #include <utility>
 
@@ -21,7 +20,7 @@ constexpr double kWorthwhileGain = 1e-3;  // of the known solution's bytes, by k
 constexpr float kKept = 0.95F;            // of the use so far, each time a constraint is visited
 constexpr float kLeastShare = 0.005F;
 
-// All sweeps of one search pass over so many gains at most, some ten seconds. The first sweeps gain most of it.
+// All sweeps of one improve() pass over so many gains at most, some ten seconds. The first sweeps gain most of it.
 constexpr std::uint64_t kMostGains = 100'000'000;
 constexpr std::size_t kLeastTightest = 4;  // constraints of each member, before more of them may be found not to be worth it
 // Constraints with so many gains are enough of them.
@@ -48,18 +47,18 @@ BytesSplit::BytesSplit(const SelectionProblem& problem, const TreeOrder& order, 
   keep_as_best();
 }
 
-void BytesSplit::add(std::span<const std::uint32_t> constraints) {
-  std::vector<std::uint32_t> added;
-  std::ranges::set_difference(constraints, active_, std::back_inserter(added));
-  std::erase_if(added, [this](std::uint32_t q) { return !(problem_.deficit[q] > kLeastDeficit); });
-  for (const std::uint32_t q : added) {
+void BytesSplit::add(std::span<const std::uint32_t> constraints, std::uint64_t most_gains, const WorkBudget& budget) {
+  const std::vector<std::uint32_t> before = active_;
+  for (const std::uint32_t q : constraints) {
+    if (gains_ >= most_gains) break;
+    if (!(problem_.deficit[q] > kLeastDeficit) || std::ranges::binary_search(before, q)) continue;
+    budget.check();
     load(q);
     gains_ += column_.size();
     for (std::uint32_t i = 0; i < column_.size(); ++i) ++demands_[column_.candidate(i)];
+    active_.push_back(q);
   }
-  const auto before = static_cast<std::ptrdiff_t>(active_.size());
-  active_.insert(active_.end(), added.begin(), added.end());
-  std::inplace_merge(active_.begin(), active_.begin() + before, active_.end());
+  std::ranges::sort(active_);
 }
 
 void BytesSplit::load(std::uint32_t q) {
@@ -237,18 +236,14 @@ bool improve(BytesSplit& split, double aim_bytes, int iterations, const WorkBudg
   return finished;
 }
 
-std::vector<std::uint32_t> constraints_of(const SelectionProblem& problem, const std::vector<bool>& ignored) {
-  std::vector<std::uint32_t> constraints;
-  for (std::uint32_t q = 0; q < problem.deficit.size(); ++q)
-    if (ignored.empty() || !ignored[q / problem.stages]) constraints.push_back(q);
-  return constraints;
-}
-
 bool improve_by(const TightRows& rows, BytesSplit& split, double known_bytes, int iterations, const WorkBudget& budget,
                 SelectionWork& work) {
   for (std::size_t count = 1;; count *= 2) {
     const double before = split.best_value();
-    split.add(rows.tightest(count));
+    if (count > 1 && work.exhausted()) return false;
+    const std::uint64_t work_before = split.work();
+    split.add(rows.tightest(count), kMostBoundGains, budget);
+    work.spend(split.work() - work_before);
     if (!improve(split, known_bytes, iterations, budget, work)) return false;
     const bool gained = split.best_value() - before >= kWorthwhileGain * known_bytes;
     if (count >= rows.most() || split.gains() >= kMostBoundGains || (count >= kLeastTightest && !gained)) return true;

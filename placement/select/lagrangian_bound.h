@@ -3,9 +3,10 @@
 // Let every covering constraint q = (CPV, stage) pay a part w_iq >= 0 of candidate i's bytes. If the parts of each candidate add up to no
 // more than its bytes m_i, then
 //     sum over q of  (cheapest antichain that meets q alone, at prices w_q)  <=  bytes of any feasible set:
-// the set's bytes cover all the parts, and at each q it contains an antichain. This is Lagrangian decomposition (Guignard and Kim 1987): it
-// knows that impostors of one cluster do not add up at a CPV, which the sum over all candidates of 5.5 forgets; in cities that alone is a
-// factor of ten. ANY split gives a bound, so the search needs no proof of its own:
+// the set's bytes cover all the parts, and at each q it contains an antichain. Constraints that are left out pay nothing, and the rest
+// still gives a bound (tight_rows.h says which are looked at). This is Lagrangian decomposition (Guignard and Kim 1987): it knows that
+// impostors of one cluster do not add up at a CPV, which the sum over all candidates of 5.5 forgets; in cities that alone is a factor of
+// ten. ANY split gives a bound, so the search needs no proof of its own:
 //   - a sweep visits one q after the other, gives it its share of the bytes that nobody has claimed yet, and takes back what its optimum
 //     does not need (priced_column.h): no sweep lowers the bound. It ends in a split that no single q can improve, below the best;
 //   - between sweeps, a subgradient step moves bytes towards the q whose fractional optimum uses the candidate; it goes by the mean of the
@@ -30,9 +31,9 @@ class BytesSplit {
   /// Of no constraint yet.
   BytesSplit(const SelectionProblem& problem, const TreeOrder& order, const Columns& columns);
 
-  /// Constraints that are to pay, too: ascending; those that are there already, or ask for nothing, change nothing. The best split so far
-  /// stays one.
-  void add(std::span<const std::uint32_t> constraints);
+  /// Constraints that are to pay, too, from the first on until all together have `most_gains`. Those that are there already, or ask for
+  /// nothing, change nothing. The best split so far stays one: it has no bid for the new ones.
+  void add(std::span<const std::uint32_t> constraints, std::uint64_t most_gains, const WorkBudget& budget);
 
   /// One sweep, forwards and backwards in turn; returns the bound that the split now gives, without its rounding error.
   double sweep(const WorkBudget& budget);
@@ -97,12 +98,10 @@ class BytesSplit {
 /// very large problems, and where the latest ones gained next to nothing of these bytes. Returns false when the work limit ended it.
 bool improve(BytesSplit& split, double aim_bytes, int iterations, const WorkBudget& budget, SelectionWork& work);
 
-/// All constraints but those of CPVs with `ignored[p]` (none given: none).
-[[nodiscard]] std::vector<std::uint32_t> constraints_of(const SelectionProblem& problem, const std::vector<bool>& ignored);
-
 /// Lets the tightest constraints of a known solution of `known_bytes` pay, then twice as many, and so on, as long as that gains anything
 /// and is affordable: the best split of few constraints is found soon, and the search goes on from there. `iterations`: of improve(), each
-/// time. Returns false when the work limit ended it.
-bool improve_by(const TightRows& rows, BytesSplit& split, double known_bytes, int iterations, const WorkBudget& budget, SelectionWork& work);
+/// time constraints are added. Returns false when the work limit ended it.
+bool improve_by(const TightRows& rows, BytesSplit& split, double known_bytes, int iterations, const WorkBudget& budget,
+                SelectionWork& work);
 
 }  // namespace standin

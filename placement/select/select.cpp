@@ -122,14 +122,15 @@ class Selector {
 
       const SelectionSummary first_summary = result_.summary;
       auto first = std::exchange(cover_, std::make_unique<Cover>(problem_, order_));
-      const bool finished = pick(std::move(price));
+      const bool picked = pick(std::move(price));
       const std::uint64_t evaluations = result_.summary.evaluations;
-      if (finished) {
+      bool finished = picked;
+      if (picked) {
         repair();
         result_.summary.bytes_greedy = bytes();
-        if (config_.reverse_delete) reverse_delete(problem_, *cover_, budget_, work_);
+        if (config_.reverse_delete) finished = reverse_delete(problem_, *cover_, budget_, work_);
       }
-      result_.summary.guided = finished && bytes() < first_bytes;
+      result_.summary.guided = picked && bytes() < first_bytes;
       if (!result_.summary.guided) {
         cover_ = std::move(first);
         result_.summary = first_summary;
@@ -201,8 +202,11 @@ class Selector {
 
   [[nodiscard]] TightRows tight_rows() {
     TightRows rows(problem_);
-    for (std::uint32_t p = 0; p < problem_.cpv_count(); ++p)
-      if (!ignored_[p]) rows.see(p, cover_->best(p).members);
+    for (std::uint32_t p = 0; p < problem_.cpv_count(); ++p) {
+      if (ignored_[p]) continue;
+      budget_.check();
+      rows.see(p, cover_->best(p).members);
+    }
     rows.sort();
     return rows;
   }
@@ -266,20 +270,26 @@ class Selector {
   Selection result_;
 };
 
+void require_candidates(const SelectionProblem& problem, std::span<const std::uint32_t> candidates, const char* what) {
+  for (const std::uint32_t candidate : candidates)
+    if (candidate >= problem.candidate_count())
+      throw Failure(ErrorWord::kBadUsage, std::string(what) + " candidate " + std::to_string(candidate) + " violates < " +
+                                              std::to_string(problem.candidate_count()) + " (the number of candidates)");
+}
+
 }  // namespace
 
 Selection select_impostors(const SelectionProblem& problem, const SelectionConfig& config, std::span<const std::uint32_t> initial,
                            const WorkBudget& budget) {
   validate(problem);
-  for (const std::uint32_t candidate : initial)
-    if (candidate >= problem.candidate_count())
-      throw Failure(ErrorWord::kBadUsage, "initial candidate " + std::to_string(candidate) + " violates < " +
-                                              std::to_string(problem.candidate_count()) + " (the number of candidates)");
+  require_candidates(problem, initial, "initial");
   return Selector(problem, config, budget).run(initial);
 }
 
-double memory_lower_bound(const SelectionProblem& problem, const Selection& known, const SelectionConfig& config, const WorkBudget& budget) {
+double memory_lower_bound(const SelectionProblem& problem, const Selection& known, const SelectionConfig& config,
+                          const WorkBudget& budget) {
   validate(problem);
+  require_candidates(problem, known.chosen, "known");
   return Selector(problem, config, budget).lower_bound(known);
 }
 

@@ -127,11 +127,12 @@ struct Selection {
 
 struct SelectionConfig {
   bool lazy = true;            // false: plain greedy, the oracle
-  int guided_sweeps = 0;       // of the lower bound's search, for a second greedy at its prices; 0: none. Not where `initial` has members
+  int guided_sweeps = 0;       // of the lower bound's search, each time constraints are added, for a second greedy at its prices; 0: none.
+                               // Not where `initial` has members
   bool reverse_delete = true;  // false: what the greedy picks is kept
   int exchange_rounds = 0;     // each round tries to add one and delete others
   std::uint64_t recreate_trials = 0;       // of ruin and recreate. Not where `initial` has members
-  int bound_iterations = 100;              // sweeps and steps; 0: no lower bound
+  int bound_iterations = 100;              // sweeps and steps, each time constraints are added; 0: no lower bound
   std::uint64_t most_gains = UINT64_MAX;   // that all steps together may look at: when passed, they end where they are
   std::uint64_t gains_before = 0;          // that earlier selections under the same limit have looked at
   std::function<bool()> out_of_time = {};  // a deadline; empty: none. Not deterministic, unless it is

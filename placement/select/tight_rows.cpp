@@ -11,21 +11,24 @@ void TightRows::see(std::uint32_t cpv, const std::vector<Serving>& antichain) {
     if (!(problem_.deficit[constraint] > 0.0)) continue;
     double gained = 0.0;
     for (const Serving& serving : antichain) gained += problem_.gain(serving.candidate, serving.entry, stage);
-    for (const Serving& serving : antichain) uses_[serving.candidate].push_back({gained / problem_.deficit[constraint], constraint});
+    for (const Serving& serving : antichain)
+      if (problem_.gain(serving.candidate, serving.entry, stage) > 0.0)
+        uses_[serving.candidate].push_back({gained / problem_.deficit[constraint], constraint});
   }
 }
 
 void TightRows::sort() {
-  for (auto& uses : uses_)
-    std::ranges::sort(uses, {}, [](const Use& use) { return std::tuple(use.coverage, use.constraint); });
+  for (auto& uses : uses_) std::ranges::sort(uses, {}, [](const Use& use) { return std::tuple(use.coverage, use.constraint); });
 }
 
 std::vector<std::uint32_t> TightRows::tightest(std::size_t count) const {
-  std::vector<std::uint32_t> rows;
+  std::vector<Use> taken;
   for (const auto& uses : uses_)
-    for (std::size_t i = 0; i < std::min(count, uses.size()); ++i) rows.push_back(uses[i].constraint);
-  std::ranges::sort(rows);
-  rows.erase(std::unique(rows.begin(), rows.end()), rows.end());
+    taken.insert(taken.end(), uses.begin(), uses.begin() + static_cast<std::ptrdiff_t>(std::min(count, uses.size())));
+  std::ranges::sort(taken, {}, [](const Use& use) { return std::tuple(use.coverage, use.constraint); });
+  std::vector<std::uint32_t> rows;
+  for (const Use& use : taken) rows.push_back(use.constraint);
+  rows.erase(std::unique(rows.begin(), rows.end()), rows.end());  // uses of one constraint are equally tight
   return rows;
 }
 

@@ -21,7 +21,7 @@ class TightRows {
   void see(std::uint32_t cpv, const std::vector<Serving>& antichain);
   /// Once all are seen: of each member the constraints that use it, tightest first.
   void sort();
-  /// The `count` tightest of each member: ascending, each once.
+  /// The `count` tightest of each member, each once: the tightest of all first.
   [[nodiscard]] std::vector<std::uint32_t> tightest(std::size_t count) const;
   /// Of the member that has most.
   [[nodiscard]] std::size_t most() const;

@@ -192,7 +192,9 @@ std::vector<SpecField> select_fields() {
   return {
       field("select.keep_picks", "--keep-picks", &JobSpec::keep_picks, "keep all that the greedy picked: no reverse-delete"),
       field("select.guided_sweeps", "--guided-sweeps", &JobSpec::guided_sweeps,
-            "sweeps of the lower bound's search before a second greedy at its prices; 0: no second greedy", between(0, 1000)),
+            "most sweeps and steps of the lower bound's search, each time constraints are added, before a second greedy at its prices; 0: "
+            "no second greedy",
+            between(0, 1000)),
       field("select.exchange_rounds", "--exchange-rounds", &JobSpec::exchange_rounds, "rounds of exchange after reverse-delete",
             between(0, 100)),
       field("select.recreate_trials", "--recreate-trials", &JobSpec::recreate_trials,
@@ -203,7 +205,8 @@ std::vector<SpecField> select_fields() {
             "wall seconds that selections may take; what is then unfinished is named, and another run may end elsewhere; 0: no deadline",
             at_least(0.0)),
       field("select.bound_iterations", "--bound-iterations", &JobSpec::bound_iterations,
-            "most sweeps and subgradient steps of the lower bound, which ends when they gain next to nothing; 0: no bound",
+            "most sweeps and subgradient steps of the lower bound, each time constraints are added; it ends when they gain next to "
+            "nothing; 0: no bound",
             between(0, 100'000)),
       field("select.bake_rounds", "--bake-rounds", &JobSpec::bake_rounds, "rounds of baking and repair", between(1, 20)),
       field("select.size_bakes", "--size-bakes", &JobSpec::size_bakes, "impostors baked to fit the size model; 0: default model",

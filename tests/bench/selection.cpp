@@ -84,9 +84,9 @@ void run(const SelectionProblem& problem) {
   describe(problem);
   time_greedy(problem);
   (void)time_selection(problem, "greedy, repair, reverse-delete", {.bound_iterations = 0});
-  (void)time_selection(problem, "with a second greedy", {.guided_sweeps = 6, .bound_iterations = 0});
+  (void)time_selection(problem, "with a second greedy", {.guided_sweeps = 30, .bound_iterations = 0});
   Selection best = time_selection(problem, "and 1,000 trials of ruin and recreate",
-                                  {.guided_sweeps = 6, .recreate_trials = 1000, .bound_iterations = 0});
+                                  {.guided_sweeps = 30, .recreate_trials = 1000, .bound_iterations = 0});
   count_shown(problem, best);
   for (const double limit_s : {1.0, 10.0, 30.0}) time_bound(problem, best, limit_s);
 }

@@ -16,10 +16,18 @@ double bound_by(const SelectionProblem& problem, std::span<const std::uint32_t> 
   const TreeOrder order(problem.parent);
   const Columns columns(problem, order);
   BytesSplit split(problem, order, columns);
-  split.add(constraints);
+  split.add(constraints, UINT64_MAX, {});
   SelectionWork work;
   (void)improve(split, upper_bytes, iterations, {}, work);
   return split.certified({});
+}
+
+/// All constraints but those of CPVs with `ignored[p]`.
+std::vector<std::uint32_t> constraints_of(const SelectionProblem& problem, const std::vector<bool>& ignored) {
+  std::vector<std::uint32_t> constraints;
+  for (std::uint32_t q = 0; q < problem.deficit.size(); ++q)
+    if (ignored.empty() || !ignored[q / problem.stages]) constraints.push_back(q);
+  return constraints;
 }
 
 double bound_of(const SelectionProblem& problem, double upper_bytes, int iterations) {
@@ -58,24 +66,46 @@ TEST(LagrangianBound, HoldsWhereOnlySomeConstraintsAreLookedAt) {
   EXPECT_GT(lower, 20);
 }
 
-TEST(LagrangianBound, OfMoreConstraintsIsNeverLower) {
-  for (std::uint64_t seed = 1; seed <= 50; ++seed) {
-    const auto problem = random_problem(seed, {.nodes = 30, .candidates = 80, .cpvs = 20, .integers = false, .demand = 30.0});
+// What was found before constraints were added still holds with them: the next sweep begins there, and all ends below the optimum.
+TEST(LagrangianBound, GoesOnFromFewerConstraints) {
+  int count = 0;
+  for (std::uint64_t seed = 1; seed <= 200; ++seed) {
+    const auto problem = random_problem(seed, {.cpvs = 4, .stages = seed % 2 == 0 ? 1U : 3U, .integers = false});
+    const auto exact = BruteForce(problem).optimum();
+    if (!exact) continue;
     const TreeOrder order(problem.parent);
     const Columns columns(problem, order);
+    const std::vector<std::uint32_t> all = constraints_of(problem, {});
     BytesSplit split(problem, order, columns);
-    double before = 0.0;
-    for (const std::uint32_t last : {1U, 4U, 20U}) {
-      std::vector<std::uint32_t> first(last);
-      std::iota(first.begin(), first.end(), 0U);
-      split.add(first);
+    for (const std::size_t last : {std::size_t{1}, all.size() / 2, all.size()}) {
+      const double before = split.certified({});
+      split.add(std::span(all).first(last), UINT64_MAX, {});
+      ASSERT_GE(split.certified({}), before * (1.0 - 1e-9)) << "seed " << seed;
+      ASSERT_GE(split.sweep({}), split.best_value() * (1.0 - 1e-9)) << "seed " << seed;
       SelectionWork work;
-      (void)improve(split, 300.0, 50, {}, work);
-      ASSERT_GE(split.best_value(), before) << "seed " << seed << ", " << last << " constraints";
-      before = split.best_value();
+      (void)improve(split, exact->bytes, 30, {}, work);
+      ASSERT_LE(split.certified({}), exact->bytes) << "seed " << seed << ", " << last << " constraints";
     }
-    EXPECT_GT(before, 0.0) << "seed " << seed;
+    ++count;
   }
+  EXPECT_GT(count, 30);
+}
+
+TEST(LagrangianBound, AddsConstraintsOnceAndAsManyAsAreAffordable) {
+  const auto problem = random_problem(5, {.nodes = 60, .candidates = 200, .cpvs = 40, .integers = false, .demand = 60.0});
+  const TreeOrder order(problem.parent);
+  const Columns columns(problem, order);
+  const std::vector<std::uint32_t> all = constraints_of(problem, {});
+  BytesSplit split(problem, order, columns);
+  split.add(std::span(all).first(20), UINT64_MAX, {});
+  split.add(all, UINT64_MAX, {});
+  BytesSplit at_once(problem, order, columns);
+  at_once.add(all, UINT64_MAX, {});
+  EXPECT_EQ(split.gains(), at_once.gains());
+  BytesSplit some(problem, order, columns);
+  some.add(all, at_once.gains() / 2, {});
+  EXPECT_GE(some.gains(), at_once.gains() / 2);
+  EXPECT_LT(some.gains(), at_once.gains());
 }
 
 // Deficits 2 and 3 of two members; the first is used by three CPVs.
@@ -90,8 +120,8 @@ TEST(TightRows, AreThoseWithLeastToSpare) {
   }
   rows.sort();
   EXPECT_EQ(rows.most(), 3U);
-  EXPECT_EQ(rows.tightest(1), (std::vector<std::uint32_t>{1, 2}));  // 1.05 of CPV 1; 2 of CPV 2 is all that the second member has
-  EXPECT_EQ(rows.tightest(3), (std::vector<std::uint32_t>{0, 1, 2}));
+  EXPECT_EQ(rows.tightest(1), (std::vector<std::uint32_t>{1, 2}));  // covered 1.05 times; 2 times, all that the second member has
+  EXPECT_EQ(rows.tightest(3), (std::vector<std::uint32_t>{1, 0, 2}));
 }
 
 TEST(MemoryLowerBound, ByTheTightRowsOfTheOptimumIsNearIt) {
@@ -110,6 +140,31 @@ TEST(MemoryLowerBound, ByTheTightRowsOfTheOptimumIsNearIt) {
   }
   EXPECT_GT(count, 50);
   EXPECT_GT(sum_ratio / count, 0.8);
+}
+
+// Whatever is said to be known, and wherever a limit ends the search.
+TEST(MemoryLowerBound, IsOneWhateverIsKnown) {
+  Rng rng(7);
+  int count = 0, above_zero = 0;
+  for (std::uint64_t seed = 1; seed <= 200; ++seed) {
+    const auto problem = random_problem(seed, {.cpvs = 3, .stages = seed % 2 == 0 ? 1U : 3U, .integers = false});
+    const auto exact = BruteForce(problem).optimum();
+    if (!exact) continue;
+    Selection known;
+    for (std::uint32_t c = 0; c < problem.candidate_count(); ++c)
+      if (rng.below(3) == 0) known.chosen.push_back(c);
+    const double bound = memory_lower_bound(problem, known, {.most_gains = rng.below(2000)}, {});
+    ASSERT_LE(bound, exact->bytes) << "seed " << seed;
+    above_zero += bound > 0.0 ? 1 : 0;
+    ++count;
+  }
+  EXPECT_GT(count, 50);
+  EXPECT_GT(above_zero, 30);
+  const auto problem = random_problem(1, {});
+  EXPECT_EQ(memory_lower_bound(problem, {}, {}, {}), 0.0);
+  Selection unknown;
+  unknown.chosen = {problem.candidate_count()};
+  EXPECT_THROW((void)memory_lower_bound(problem, unknown, {}, {}), Failure);
 }
 
 TEST(LagrangianBound, TightForOneCpvOfEqualCandidates) {

@@ -84,6 +84,18 @@ TEST(SelectionLimits, AnAmpleLimitChangesNothing) {
   EXPECT_TRUE(ample.summary.cut_short.empty());
 }
 
+// As a job selects: whatever a limit cuts short in the second greedy is named, though no step comes after it.
+TEST(SelectionLimits, ASecondGreedyCutShortIsNamed) {
+  const auto problem = instance(3);
+  SelectionConfig config{.guided_sweeps = 3, .bound_iterations = 0};
+  const auto whole = select_impostors(problem, config, {}, {});
+  ASSERT_TRUE(whole.summary.cut_short.empty());
+  for (std::uint64_t limit = whole.summary.gains / 3; limit < whole.summary.gains; limit += whole.summary.gains / 97 + 1) {
+    config.most_gains = limit;
+    EXPECT_FALSE(select_impostors(problem, config, {}, {}).summary.cut_short.empty()) << "limit " << limit << " of " << whole.summary.gains;
+  }
+}
+
 TEST(SelectionLimits, SelectionsShareALimit) {
   const auto problem = instance(4);
   const auto whole = select_impostors(problem, all_steps(), {}, {});
