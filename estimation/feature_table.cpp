@@ -169,7 +169,7 @@ Features FeatureTable::bound(std::uint32_t object, const Box& eyes) const {
   return features;
 }
 
-ObjectFromBox FeatureTable::from_box(std::uint32_t object, const EyesOf& from) const {
+ObjectFromBox FeatureTable::from_box(std::uint32_t object, const EyeBoxes& from) const {
   const ProjectionFromBox projection(camera_, from.eyes);
   ObjectFromBox result{counts_from(object, from.eyes), {}};
   for_each_part(object, from.eyes, [&](const SurfaceSamples& samples, const PlacedMesh& mesh, const PartStyle& style, bool maybe_near) {
@@ -184,8 +184,7 @@ Features FeatureTable::bound(const ObjectFromBox& object, const Gaze& gaze) cons
   const double cos_corner = std::cos(camera_.half_diagonal_rad());
   Features features = object.counts;
   for (const ObjectFromBox::Part& part : object.parts) {
-    const PartSum most =
-        larger(most_in_gaze(part.samples, gaze, cos_corner), most_in_gaze(part.near_samples, gaze, cos_corner));
+    const PartSum most = larger(most_in_gaze(part.samples, gaze, cos_corner), most_in_gaze(part.near_samples, gaze, cos_corner));
     add_part(most, part.kind, part.slenderness, most_passed_pixels_, features);
   }
   cap_pixels(most_passed_pixels_, features);

@@ -34,7 +34,7 @@ class FeatureTable {
   /// Upper bound over all views from `eyes`, in any direction, of what an object adds to a frame, at the level of detail that a cell of
   /// these eyes shows. About a microsecond a part, 15 for a part that may be within reach.
   [[nodiscard]] Features bound(std::uint32_t object, const Box& eyes) const;
-  [[nodiscard]] ObjectFromBox from_box(std::uint32_t object, const EyesOf& from) const;
+  [[nodiscard]] ObjectFromBox from_box(std::uint32_t object, const EyeBoxes& from) const;
   /// As bound(), over the views of one gaze from the same box. About a microsecond a part, 15 for a part that may be within reach.
   [[nodiscard]] Features bound(const ObjectFromBox& object, const Gaze& gaze) const;
   /// A whole frame: frame_features(), and `objects` as they hide each other, each at its level (none given: the objects' own parts). At

@@ -25,7 +25,7 @@ struct WholePatch : Patch {
 /// Fills blocks lane by lane.
 class BlockBuilder {
  public:
-  BlockBuilder(std::span<const WholePatch> patches, PartStyle style, const ProjectionFromBox& projection, const EyesOf& from)
+  BlockBuilder(std::span<const WholePatch> patches, PartStyle style, const ProjectionFromBox& projection, const EyeBoxes& from)
       : style_(style), projection_(projection), from_(from) {
     take(patches);
     if (!blocks_.empty()) complete_block();
@@ -117,7 +117,7 @@ class BlockBuilder {
 
   PartStyle style_;
   const ProjectionFromBox& projection_;
-  const EyesOf& from_;
+  const EyeBoxes& from_;
   std::vector<SampleBlock> blocks_;
   std::size_t lanes_ = 0;  // of the last block
 };
@@ -125,7 +125,7 @@ class BlockBuilder {
 }  // namespace
 
 std::vector<SampleBlock> facing_blocks(std::span<const SurfaceSample> samples, const PlacedMesh& mesh, PartStyle style,
-                                       const ProjectionFromBox& projection, const EyesOf& from) {
+                                       const ProjectionFromBox& projection, const EyeBoxes& from) {
   std::vector<WholePatch> patches;
   patches.reserve(samples.size());
   for (const SurfaceSample& sample : samples) patches.emplace_back(mesh.place(sample));

@@ -30,14 +30,14 @@ struct PartStyle {
 };
 
 /// Where samples are looked at from.
-struct EyesOf {
+struct EyeBoxes {
   Box eyes;
   Box all;  // holds the eyes: what is close as seen from all of it is taken together, so that fewer eyes never see more
 };
 
 /// Those that face some eye, in blocks of neighbours.
 [[nodiscard]] std::vector<SampleBlock> facing_blocks(std::span<const SurfaceSample> samples, const PlacedMesh& mesh, PartStyle style,
-                                                     const ProjectionFromBox& projection, const EyesOf& from);
+                                                     const ProjectionFromBox& projection, const EyeBoxes& from);
 
 /// The most that samples may show to any view of a gaze.
 [[nodiscard]] PartSum most_in_gaze(std::span<const SampleBlock> blocks, const Gaze& gaze, double cos_corner);

@@ -236,7 +236,7 @@ bool improve(BytesSplit& split, double aim_bytes, int iterations, const WorkBudg
   return finished;
 }
 
-bool improve_by(const TightRows& rows, BytesSplit& split, double known_bytes, int iterations, const WorkBudget& budget,
+bool improve_by(const TightConstraints& rows, BytesSplit& split, double known_bytes, int iterations, const WorkBudget& budget,
                 SelectionWork& work) {
   for (std::size_t count = 1;; count *= 2) {
     const double before = split.best_value();

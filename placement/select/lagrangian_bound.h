@@ -4,9 +4,9 @@
 // more than its bytes m_i, then
 //     sum over q of  (cheapest antichain that meets q alone, at prices w_q)  <=  bytes of any feasible set:
 // the set's bytes cover all the parts, and at each q it contains an antichain. Constraints that are left out pay nothing, and the rest
-// still gives a bound (tight_rows.h says which are looked at). This is Lagrangian decomposition (Guignard and Kim 1987): it knows that
-// impostors of one cluster do not add up at a CPV, which the sum over all candidates of 5.5 forgets; in cities that alone is a factor of
-// ten. ANY split gives a bound, so the search needs no proof of its own:
+// still gives a bound (tight_constraints.h says which are looked at). This is Lagrangian decomposition (Guignard and Kim 1987): it knows
+// that impostors of one cluster do not add up at a CPV, which the sum over all candidates of 5.5 forgets; in cities that alone is a factor
+// of ten. ANY split gives a bound, so the search needs no proof of its own:
 //   - a sweep visits one q after the other, gives it its share of the bytes that nobody has claimed yet, and takes back what its optimum
 //     does not need (priced_column.h): no sweep lowers the bound. It ends in a split that no single q can improve, below the best;
 //   - between sweeps, a subgradient step moves bytes towards the q whose fractional optimum uses the candidate; it goes by the mean of the
@@ -21,7 +21,7 @@
 #include "placement/select/priced_column.h"
 #include "placement/select/selection_work.h"
 #include "placement/select/serving.h"
-#include "placement/select/tight_rows.h"
+#include "placement/select/tight_constraints.h"
 #include "render/base/work.h"
 
 namespace standin {
@@ -101,7 +101,7 @@ bool improve(BytesSplit& split, double aim_bytes, int iterations, const WorkBudg
 /// Lets the tightest constraints of a known solution of `known_bytes` pay, then twice as many, and so on, as long as that gains anything
 /// and is affordable: the best split of few constraints is found soon, and the search goes on from there. `iterations`: of improve(), each
 /// time constraints are added. Returns false when the work limit ended it.
-bool improve_by(const TightRows& rows, BytesSplit& split, double known_bytes, int iterations, const WorkBudget& budget,
+bool improve_by(const TightConstraints& rows, BytesSplit& split, double known_bytes, int iterations, const WorkBudget& budget,
                 SelectionWork& work);
 
 }  // namespace standin

@@ -115,7 +115,7 @@ class Selector {
       if (work_.exhausted()) return false;
       BytesSplit split(problem_, order_, columns_);
       const double first_bytes = bytes();
-      if (!improve_by(tight_rows(), split, first_bytes, config_.guided_sweeps, budget_, work_)) return false;
+      if (!improve_by(tight_constraints(), split, first_bytes, config_.guided_sweeps, budget_, work_)) return false;
       std::vector<double> price(problem_.candidate_count());
       for (std::uint32_t c = 0; c < price.size(); ++c)
         price[c] = kShareOfBytes * problem_.bytes[c] + std::max(0.0, split.unclaimed_bytes(c));
@@ -195,13 +195,13 @@ class Selector {
 
   double bound() {
     BytesSplit split(problem_, order_, columns_);
-    if (!improve_by(tight_rows(), split, bytes(), config_.bound_iterations, budget_, work_))
+    if (!improve_by(tight_constraints(), split, bytes(), config_.bound_iterations, budget_, work_))
       result_.summary.cut_short.push_back({"lower bound", bytes(), bytes()});
     return split.certified(budget_);
   }
 
-  [[nodiscard]] TightRows tight_rows() {
-    TightRows rows(problem_);
+  [[nodiscard]] TightConstraints tight_constraints() {
+    TightConstraints rows(problem_);
     for (std::uint32_t p = 0; p < problem_.cpv_count(); ++p) {
       if (ignored_[p]) continue;
       budget_.check();

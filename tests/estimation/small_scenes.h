@@ -71,4 +71,39 @@ inline Vec3 random_unit(Rng& rng) {
   }
 }
 
+inline Mat4 moved(double x, double y, double z) {
+  return glm::translate(Mat4(1.0), Vec3(x, y, z));
+}
+
+inline Scene random_scene(Rng& rng) {
+  Scene scene;
+  for (int i = 0; i < 4; ++i) {
+    const Mat4 transform = moved(rng.uniform(-5, 5), rng.uniform(-5, 5), rng.uniform(-5, 5)) *
+                           glm::rotate(Mat4(1.0), rng.uniform(0, 6), random_unit(rng)) *
+                           glm::scale(Mat4(1.0), Vec3(rng.uniform(0.1, 3), rng.uniform(-3, -0.1), rng.uniform(0.1, 3)));
+    Mesh mesh = i == 0 ? grid_mesh(2.0F, 3) : random_mesh(rng, static_cast<int>(1 + rng.below(200)));
+    add_object(scene, std::move(mesh), transform, i % 2 == 0, i == 2 ? AlphaMode::kMask : AlphaMode::kOpaque, i != 3);
+  }
+  return scene;
+}
+
+/// Every object at three further levels: half, a quarter, an eighth of its triangles, from ever farther.
+inline Scene with_levels(Scene scene, Rng& rng) {
+  for (Object& object : scene.objects) {
+    const auto original = scene.parts[object.first_part];
+    double distance_m = 0.0;
+    for (int k = 1; k <= 3; ++k) {
+      Mesh simple = scene.meshes[original.mesh];
+      simple.indices.resize(std::max<std::size_t>(3, (simple.indices.size() >> k) / 3 * 3));
+      simple.simplified_from = static_cast<std::int32_t>(original.mesh);
+      distance_m += std::pow(10.0, rng.uniform(-1.5, 1.0));
+      object.levels.push_back({static_cast<std::uint32_t>(scene.parts.size()), 1, simple.triangle_count(), 0.0, -1.0, distance_m});
+      scene.parts.push_back({static_cast<std::uint32_t>(scene.meshes.size()), original.material});
+      scene.meshes.push_back(std::move(simple));
+    }
+  }
+  update_derived(scene);
+  return scene;
+}
+
 }  // namespace standin::test

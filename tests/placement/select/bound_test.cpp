@@ -109,9 +109,9 @@ TEST(LagrangianBound, AddsConstraintsOnceAndAsManyAsAreAffordable) {
 }
 
 // Deficits 2 and 3 of two members; the first is used by three CPVs.
-TEST(TightRows, AreThoseWithLeastToSpare) {
+TEST(TightConstraints, AreThoseWithLeastToSpare) {
   const auto problem = make_problem({-1, 0, 0}, {{1, 1.0, {{0, {4.0}}, {1, {2.1}}, {2, {3.0}}}}, {2, 1.0, {{2, {3.0}}}}}, {2.0, 2.0, 3.0});
-  TightRows rows(problem);
+  TightConstraints rows(problem);
   const Columns columns(problem, TreeOrder(problem.parent));
   for (std::uint32_t p = 0; p < 3; ++p) {
     std::vector<Serving> all;
@@ -124,7 +124,7 @@ TEST(TightRows, AreThoseWithLeastToSpare) {
   EXPECT_EQ(rows.tightest(3), (std::vector<std::uint32_t>{1, 0, 2}));
 }
 
-TEST(MemoryLowerBound, ByTheTightRowsOfTheOptimumIsNearIt) {
+TEST(MemoryLowerBound, ByTheTightConstraintsOfTheOptimumIsNearIt) {
   double sum_ratio = 0.0;
   int count = 0;
   for (std::uint64_t seed = 1; seed <= 200; ++seed) {

@@ -5,17 +5,17 @@
 // the whole (lagrangian_bound.h), so which of them are looked at is a matter of the bound's quality alone.
 #pragma once
 
+#include <compare>
 #include <cstdint>
-#include <utility>
 #include <vector>
 
 #include "placement/select/serving.h"
 
 namespace standin {
 
-class TightRows {
+class TightConstraints {
  public:
-  explicit TightRows(const SelectionProblem& problem) : problem_(problem), uses_(problem.candidate_count()) {}
+  explicit TightConstraints(const SelectionProblem& problem) : problem_(problem), uses_(problem.candidate_count()) {}
 
   /// `antichain`: what the known solution shows there.
   void see(std::uint32_t cpv, const std::vector<Serving>& antichain);
@@ -30,6 +30,7 @@ class TightRows {
   struct Use {
     double coverage = 0.0;  // of the deficit, by the whole antichain
     std::uint32_t constraint = 0;
+    friend auto operator<=>(const Use&, const Use&) = default;
   };
 
   const SelectionProblem& problem_;

@@ -1,11 +1,10 @@
-#include "placement/select/tight_rows.h"
+#include "placement/select/tight_constraints.h"
 
 #include <algorithm>
-#include <tuple>
 
 namespace standin {
 
-void TightRows::see(std::uint32_t cpv, const std::vector<Serving>& antichain) {
+void TightConstraints::see(std::uint32_t cpv, const std::vector<Serving>& antichain) {
   for (std::uint32_t stage = 0; stage < problem_.stages; ++stage) {
     const std::uint32_t constraint = cpv * problem_.stages + stage;
     if (!(problem_.deficit[constraint] > 0.0)) continue;
@@ -17,22 +16,22 @@ void TightRows::see(std::uint32_t cpv, const std::vector<Serving>& antichain) {
   }
 }
 
-void TightRows::sort() {
-  for (auto& uses : uses_) std::ranges::sort(uses, {}, [](const Use& use) { return std::tuple(use.coverage, use.constraint); });
+void TightConstraints::sort() {
+  for (auto& uses : uses_) std::ranges::sort(uses);
 }
 
-std::vector<std::uint32_t> TightRows::tightest(std::size_t count) const {
+std::vector<std::uint32_t> TightConstraints::tightest(std::size_t count) const {
   std::vector<Use> taken;
   for (const auto& uses : uses_)
     taken.insert(taken.end(), uses.begin(), uses.begin() + static_cast<std::ptrdiff_t>(std::min(count, uses.size())));
-  std::ranges::sort(taken, {}, [](const Use& use) { return std::tuple(use.coverage, use.constraint); });
+  std::ranges::sort(taken);
   std::vector<std::uint32_t> rows;
   for (const Use& use : taken) rows.push_back(use.constraint);
   rows.erase(std::unique(rows.begin(), rows.end()), rows.end());  // uses of one constraint are equally tight
   return rows;
 }
 
-std::size_t TightRows::most() const {
+std::size_t TightConstraints::most() const {
   std::size_t most = 0;
   for (const auto& uses : uses_) most = std::max(most, uses.size());
   return most;
