@@ -37,7 +37,7 @@ json curves_json(const Surveyed& job, const JobSpec& spec, const Subdivision& su
           {"visibility", visibility_curve(world, spec, budget)},
           {"view_space",
            view_space_curve(world, model, subdivision, model.predicted_budget_ms(spec.budget_ms), job.survey.worst_frame_ms, budget)},
-          {"select", select_curve(selected, clock)},
+          {"select", select_curve(selected)},
           {"bake_rounds", bake_rounds_curve(selected, clock)},
           {"bake", bake_curve(world, impostors, budget)}};
 }

@@ -34,6 +34,7 @@ class Selector {
     if (pick({})) {
       repair();
       result_.summary.bytes_greedy = bytes();
+      tell("greedy");
       if (config_.reverse_delete) step("reverse-delete", [&] { return reverse_delete(problem_, *cover_, budget_, work_); });
       if (initial.empty()) pick_at_prices();
       if (config_.exchange_rounds > 0)
@@ -115,7 +116,9 @@ class Selector {
       if (work_.exhausted()) return false;
       BytesSplit split(problem_, order_, columns_);
       const double first_bytes = bytes();
-      if (!improve_by(tight_constraints(), split, first_bytes, config_.guided_sweeps, budget_, work_)) return false;
+      const bool priced = improve_by(tight_constraints(), split, first_bytes, config_.guided_sweeps, budget_, work_);
+      result_.summary.priced_bound_bytes = split.certified(budget_);
+      if (!priced) return false;
       std::vector<double> price(problem_.candidate_count());
       for (std::uint32_t c = 0; c < price.size(); ++c)
         price[c] = kShareOfBytes * problem_.bytes[c] + std::max(0.0, split.unclaimed_bytes(c));
@@ -150,6 +153,11 @@ class Selector {
   void step(const char* name, Improvement&& improvement) {
     const double before = bytes();
     if (!improvement()) result_.summary.cut_short.push_back({name, before, bytes()});
+    tell(name);
+  }
+
+  void tell(const char* name) const {
+    if (config_.on_step) config_.on_step({name, work_.gains() - config_.gains_before, bytes()});
   }
 
   /// The greedy was cut short: what its picks meet is met, the rest is not.

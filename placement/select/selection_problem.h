@@ -103,6 +103,13 @@ struct CutShort {
   double bytes_after = 0.0;
 };
 
+/// After a step of a selection, also one that a limit cut short. What is chosen then meets all that can be met.
+struct SelectionStep {
+  std::string name;
+  std::uint64_t gains = 0;  // that this selection has looked at so far
+  double bytes = 0.0;       // of what is chosen
+};
+
 struct SelectionSummary {
   enum class Stop { kAllMet, kSomeUnreachable, kGreedyCutShort } stop = Stop::kAllMet;
   std::string message;
@@ -110,11 +117,12 @@ struct SelectionSummary {
   double bytes = 0.0;              // after reverse-delete and exchange
   double lower_bound_bytes = 0.0;  // lagrangian_bound.h, of the instance without its unreachable CPVs
   std::uint32_t picked_by_greedy = 0;
-  std::uint32_t stalled = 0;      // CPVs that the stall repair had to solve
-  std::uint64_t evaluations = 0;  // score evaluations
-  std::uint64_t gains = 0;        // looked at by all steps: the unit of `most_gains`
-  bool guided = false;            // the greedy that won went by prices of the lower bound
-  std::uint64_t trials = 0;       // of ruin and recreate
+  std::uint32_t stalled = 0;        // CPVs that the stall repair had to solve
+  std::uint64_t evaluations = 0;    // score evaluations
+  std::uint64_t gains = 0;          // looked at by all steps: the unit of `most_gains`
+  double priced_bound_bytes = 0.0;  // the lower bound behind the prices of the second greedy; 0: no such prices
+  bool guided = false;              // the greedy that won went by them
+  std::uint64_t trials = 0;         // of ruin and recreate
   std::vector<CutShort> cut_short;
   std::vector<Shortfall> unmet;  // empty iff kAllMet; of a greedy cut short, what is missing with what is chosen
 };
@@ -131,12 +139,13 @@ struct SelectionConfig {
                                // Not where `initial` has members
   bool reverse_delete = true;  // false: what the greedy picks is kept
   int exchange_rounds = 0;     // each round tries to add one and delete others
-  std::uint64_t recreate_trials = 0;       // of ruin and recreate. Not where `initial` has members
-  int bound_iterations = 100;              // sweeps and steps, each time constraints are added; 0: no lower bound
-  std::uint64_t most_gains = UINT64_MAX;   // that all steps together may look at: when passed, they end where they are
-  std::uint64_t gains_before = 0;          // that earlier selections under the same limit have looked at
-  std::function<bool()> out_of_time = {};  // a deadline; empty: none. Not deterministic, unless it is
-  int threads = 1;                         // the same result for any number
+  std::uint64_t recreate_trials = 0;                       // of ruin and recreate. Not where `initial` has members
+  int bound_iterations = 100;                              // sweeps and steps, each time constraints are added; 0: no lower bound
+  std::uint64_t most_gains = UINT64_MAX;                   // that all steps together may look at: when passed, they end where they are
+  std::uint64_t gains_before = 0;                          // that earlier selections under the same limit have looked at
+  std::function<bool()> out_of_time = {};                  // a deadline; empty: none. Not deterministic, unless it is
+  std::function<void(const SelectionStep&)> on_step = {};  // told after each step; nothing of a greedy cut short
+  int threads = 1;                                         // the same result for any number
 };
 
 /// `initial`: candidates that are already in S (a repair after baking); greedy goes on from there. Deterministic: ties by score, then lower

@@ -40,9 +40,8 @@ std::vector<std::size_t> spread(std::size_t size, std::size_t count) {
   return positions;
 }
 
-/// Cumulative seconds of the last `count` runs that were followed by `after` others.
-std::vector<double> last_laps(std::vector<double> laps, std::size_t count, std::size_t after) {
-  laps.resize(laps.size() - std::min(laps.size(), after));
+/// Cumulative seconds of the last `count` runs.
+std::vector<double> last_laps(std::vector<double> laps, std::size_t count) {
   if (laps.size() > count) laps.erase(laps.begin(), laps.end() - static_cast<std::ptrdiff_t>(count));
   return laps;
 }
@@ -128,20 +127,21 @@ json view_space_curve(const World& world, const TimeModel& model, const Subdivis
   return curve;
 }
 
-json select_curve(const SelectedImpostors& selected, const StageClock& clock) {
+json select_curve(const SelectedImpostors& selected) {
   json curve = json::array();
-  const double bound_bytes = selected.as_selected.lower_bound_bytes;
-  const auto laps = last_laps(clock.laps("select"), selected.rounds.size(), 1);
-  for (std::size_t i = 0; i < laps.size() && i < selected.rounds.size(); ++i)
-    if (const double bytes = selected.rounds[i].real_bytes; bytes > 0.0)
-      curve.push_back(point(laps[i], static_cast<double>(i + 1), (bytes - bound_bytes) / bytes,
-                            "gap to the lower bound at the sizes that the selection knew, share of the bytes"));
+  const double bound_bytes = selected.first_bound_bytes;
+  if (!(bound_bytes > 0.0)) return curve;
+  for (const auto& [step, seconds] : selected.first_steps) {
+    curve.push_back(point(seconds, static_cast<double>(step.gains), (step.bytes - bound_bytes) / step.bytes,
+                          "first selection: gap to the lower bound at the same sizes, share of the bytes"));
+    curve.back()["step"] = step.name;
+  }
   return curve;
 }
 
 json bake_rounds_curve(const SelectedImpostors& selected, const StageClock& clock) {
   json curve = json::array();
-  const auto laps = last_laps(clock.laps("bake"), selected.rounds.size(), 0);
+  const auto laps = last_laps(clock.laps("bake"), selected.rounds.size());
   double baked = 0.0;
   for (std::size_t i = 0; i < laps.size() && i < selected.rounds.size(); ++i) {
     baked += selected.rounds[i].baked;

@@ -14,18 +14,19 @@
 
 namespace standin {
 
-/// All curves are lists of {seconds, work, error, unit}, in the order of `seconds`; empty where the stage did not run.
+/// All curves are lists of {seconds, work, error, unit}, in the order of `seconds`; empty where there is nothing to measure.
 
 /// Held-out median error of the target's time model, as its calibration learned. Work: timed frames.
 [[nodiscard]] nlohmann::json estimator_curve(const Target& target);
-/// Certified missed share of rays, by the share asked for, mean over at most 16 regions. Work: rays per region.
+/// Certified missed share of rays, by the share asked for, mean over at most 8 regions. Work: rays per region.
 [[nodiscard]] nlohmann::json visibility_curve(const World& world, const JobSpec& spec, const WorkBudget& budget);
-/// Highest bound of a region over the worst sampled view, by halvings in position, of the 8 slowest leaf cubes of `subdivision`. Work:
+/// Highest bound of a region over the worst sampled view, by halvings in position, of the 4 slowest leaf cubes of `subdivision`. Work:
 /// cells.
 [[nodiscard]] nlohmann::json view_space_curve(const World& world, const TimeModel& model, const Subdivision& subdivision,
                                               double predicted_budget_ms, double worst_sampled_ms, const WorkBudget& budget);
-/// Gap to the lower bound after each round of repair. Work: rounds.
-[[nodiscard]] nlohmann::json select_curve(const SelectedImpostors& selected, const StageClock& clock);
+/// Gap to the lower bound after each step of the first selection, at the sizes that it knew; empty without a second greedy, whose prices
+/// are that bound's. Work: gains looked at. Each has the `step`'s name, too.
+[[nodiscard]] nlohmann::json select_curve(const SelectedImpostors& selected);
 /// Bytes of what is chosen after each round. Work: impostors baked so far.
 [[nodiscard]] nlohmann::json bake_rounds_curve(const SelectedImpostors& selected, const StageClock& clock);
 /// Side of a texel in centre pixels: 4, 2 and 1 times the job's, over at most 8 of the impostors, scaled up by

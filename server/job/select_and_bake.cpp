@@ -176,8 +176,11 @@ class Rounds {
     config.gains_before = result_.gains;
     if (spec.deadline_s > 0.0)
       config.out_of_time = [start, rest_s = spec.deadline_s - selecting_s_] { return seconds_since(start) >= rest_s; };
+    const bool is_first = result_.rounds.empty();
+    if (is_first) config.on_step = [&](const SelectionStep& step) { result_.first_steps.push_back({step, seconds_since(start)}); };
     result_.selection = select_impostors(problem_, config, result_.selection.chosen, budget_);
     selecting_s_ += seconds_since(start);
+    if (is_first) result_.first_bound_bytes = result_.selection.summary.priced_bound_bytes;
     note_limits();
   }
 

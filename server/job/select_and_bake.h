@@ -28,6 +28,11 @@ struct BakeRound {
   double real_bytes = 0.0;
 };
 
+struct TimedStep {
+  SelectionStep step;
+  double seconds = 0.0;  // of wall time, from the selection's beginning
+};
+
 /// The bound at the sizes and costs that the last selection was made with: real for what was baked, estimated for the rest.
 struct BoundAsSelected {
   double bytes = 0.0;  // of the selection, at these sizes
@@ -39,6 +44,8 @@ struct SelectedImpostors {
   std::vector<Impostor> impostors;                   // in the order of selection.chosen
   std::vector<BakedCandidate> baked;                 // the same order
   std::vector<std::vector<std::uint32_t>> assigned;  // per CPV: indices into `impostors`, ascending
+  std::vector<TimedStep> first_steps;                // of the first selection
+  double first_bound_bytes = 0.0;  // on the bytes of any choice, at the sizes that the first selection knew; 0: none is known
   std::vector<BakeRound> rounds;
   bool only_baked = false;  // the last selection was among what is baked
   BoundAsSelected as_selected;

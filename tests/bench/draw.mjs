@@ -3,6 +3,9 @@
 //     npm ci --prefix tests/bench                         once; neither build nor tests need it
 //     node tests/bench/draw.mjs FIGURE.json [FIGURE.svg]
 //     node tests/bench/draw.mjs TABLE.csv FIGURE.svg [--title T] [--y LABEL] [--log x|y|xy]
+//     node tests/bench/draw.mjs --curves NAME=METRICS.json.. FIGURE.svg
+//
+// The last draws the curves of error against run time that `place` writes to metrics.json, of one or more jobs.
 //
 // A figure is one or more panels, side by side:
 //
@@ -31,6 +34,24 @@ export function figureOfTable(csv, { title, y, log = "" }) {
     points: rows.filter((row) => row[i + 1]).map((row) => [Number(row[0]), Number(row[i + 1])]),
   }));
   return { panels: [{ title, x: { label: header[0], log: log.includes("x") }, y: { label: y ?? header[1], log: log.includes("y") }, series }] };
+}
+
+const CURVES = {
+  estimator: "time model", visibility: "visible sets", view_space: "view space", select: "selection, after each of its steps", bake_rounds: "baking and repair", bake: "bake",
+};
+
+/** A panel for each curve that any of the jobs has; a point without error is left out where the axis is logarithmic. */
+export function figureOfCurves(jobs) {
+  const panels = Object.entries(CURVES).map(([curve, title]) => {
+    const points = Object.fromEntries(Object.entries(jobs).map(([name, metrics]) => [name, (metrics.curves?.[curve] ?? []).filter(({ seconds }) => seconds > 0)]));
+    const errors = Object.values(points).flat().map(({ error }) => error).filter((error) => error > 0);
+    const log = Math.max(...errors) > 20 * Math.min(...errors);
+    return {
+      title, x: { label: "seconds", log: true }, y: { label: Object.values(points).flat()[0]?.unit.replace(/^.*: |, .*$/g, ""), log, zero: true },
+      series: Object.entries(points).map(([name, all]) => [name, all.filter(({ error }) => error > 0 || !log)]).map(([name, list]) => ({ name, points: list.map(({ seconds, error }) => [seconds, error]), labels: list.map(({ step }) => step ?? "") })),
+    };
+  });
+  return { columns: 3, panels: panels.filter(({ series }) => series.some(({ points }) => points.length > 0)) };
 }
 
 function requirePlottable(panel) {
@@ -100,10 +121,18 @@ export async function draw(figure) {
   return `${await new View(parse(compile(vegaLiteSpec(figure)).spec), { renderer: "none" }).toSVG()}\n`;
 }
 
+async function drawCurves(words) {
+  const jobs = words.slice(0, -1).map((word) => word.split("="));
+  if (jobs.length === 0 || jobs.some((job) => job.length !== 2) || !words.at(-1).endsWith(".svg")) throw new Error("usage: draw.mjs --curves NAME=METRICS.json.. FIGURE.svg");
+  writeFileSync(words.at(-1), await draw(figureOfCurves(Object.fromEntries(jobs.map(([name, file]) => [name, JSON.parse(readFileSync(file, "utf8"))])))));
+}
+
 async function main() {
-  const options = { title: { type: "string" }, y: { type: "string" }, log: { type: "string" } };
-  const { values, positionals: [input, output = input?.replace(/\.json$/, ".svg")] } = parseArgs({ options, allowPositionals: true });
-  if (!input || output === input) throw new Error("usage: draw.mjs FIGURE.json [FIGURE.svg] | draw.mjs TABLE.csv FIGURE.svg");
+  const options = { title: { type: "string" }, y: { type: "string" }, log: { type: "string" }, curves: { type: "boolean" } };
+  const { values, positionals } = parseArgs({ options, allowPositionals: true });
+  if (values.curves) return drawCurves(positionals);
+  const [input, output = input?.replace(/\.json$/, ".svg")] = positionals;
+  if (!input || output === input) throw new Error("usage: draw.mjs FIGURE.json [FIGURE.svg] | draw.mjs TABLE.csv FIGURE.svg | draw.mjs --curves NAME=METRICS.json.. FIGURE.svg");
   const text = readFileSync(input, "utf8");
   writeFileSync(output, await draw(input.endsWith(".csv") ? figureOfTable(text, values) : JSON.parse(text)));
 }

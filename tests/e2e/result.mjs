@@ -112,7 +112,10 @@ test("curves of error against run time, and the atlases' bytes in GPU formats", 
   }
   const errors = (name) => metrics.curves[name].map((point) => point.error);
   const falls = (list) => list.every((value, i) => i === 0 || value <= list[i - 1]);
-  assert.ok(falls(errors("view_space")) && falls(errors("bake")), "more time, less error");
+  for (const name of ["view_space", "select", "bake"]) assert.ok(falls(errors(name)), `${name}: more time, less error`);
+  assert.deepEqual(metrics.curves.select.map(({ step }) => step), ["greedy", "reverse-delete", "second greedy"], "of the first selection alone");
+  for (const key of ["seconds", "work"]) assert.ok(falls(metrics.curves.select.map((point) => -point[key])), `${key} never fall`);
+  assert.ok(errors("select").every((gap) => gap < 1), "the bound is above zero");
   const last = metrics.curves.bake.at(-1);
   assert.ok(Math.abs(last.work - metrics.memory.texture_bytes) < 1e-6 * last.work, "the finest bake is the one that ships");
   assert.equal(metrics.curves.bake_rounds.at(-1).error, metrics.memory.texture_bytes);

@@ -108,7 +108,7 @@ function atlasSection({ pictures }) {
 
 const CURVE_TITLES = {
   estimator: "Time model: held-out error", visibility: "Visibility: certified missed share of rays", view_space: "View space: how loose the bounds are",
-  candidates: "Candidates: memory", select: "Selection: gap to the lower bound", bake_rounds: "Baking and repair: memory", bake: "Bake: texel size",
+  candidates: "Candidates: memory", select: "First selection: gap to the lower bound behind its prices", bake_rounds: "Baking and repair: memory", bake: "Bake: texel size",
 };
 
 function curveFigure(name, points) {
@@ -124,6 +124,7 @@ function curveFigure(name, points) {
     series: [{ name: unit || "error", colour: "--series-0", points: true, values: sorted.map((point) => point.error) }],
   });
   const columns = [
+    ...(sorted.some((point) => point.step) ? [{ title: "after", text: (point) => point.step ?? NONE }] : []),
     { title: "run time", number: true, text: (point) => seconds(point.seconds) },
     { title: "work", number: true, text: (point) => (isNumber(point.work) ? significant(point.work, 6) : String(point.work ?? NONE)) },
     { title: `error${unit ? `, ${unit}` : ""}`, number: true, text: (point) => significant(point.error, 3) },
@@ -140,7 +141,7 @@ function curvesSection({ metrics }) {
   return section("curves", "What more run time would buy", "Each stage that approximates can be made more exact for more time; these points are from this run.", element("div", { class: "side" }, ...figures));
 }
 
-const STAGE_ORDER = ["load", "view_space", "visibility", "survey", "size_model", "candidates", "select", "bake", "assemble", "curves", "verify"];
+const STAGE_ORDER = ["load", "view_space", "visibility", "lods", "size_model", "survey", "candidates", "select", "bake", "assemble", "curves", "causes", "gpu_compression", "verify"];
 
 function stagesSection({ metrics }) {
   const rank = ([name]) => (STAGE_ORDER.includes(name) ? STAGE_ORDER.indexOf(name) : STAGE_ORDER.length);

@@ -72,6 +72,7 @@ void check_selector_laws(const SelectionProblem& problem, const Selector& select
   ASSERT_TRUE(exact.has_value());
   const auto& summary = selection.summary;
   EXPECT_LE(summary.lower_bound_bytes, exact->bytes);
+  EXPECT_LE(summary.priced_bound_bytes, exact->bytes);
   EXPECT_LE(exact->bytes, summary.bytes * (1.0 + 1e-12));
   EXPECT_LE(summary.bytes, summary.bytes_greedy);
   if (exact->bytes > 0.0) worst_ratio = std::max(worst_ratio, summary.bytes / exact->bytes);
@@ -171,6 +172,24 @@ TEST(SelectorLaws, RecreatingNeverCostsAndOftenPays) {
     cheaper += with.summary.bytes < without.summary.bytes ? 1 : 0;
   }
   EXPECT_GT(cheaper, 50);
+}
+
+TEST(SelectorLaws, StepsAreToldAndNoneCosts) {
+  for (std::uint64_t seed = 1; seed <= 50; ++seed) {
+    const auto problem = random_factored_problem(seed, {.nodes = 15, .candidates = 60, .cells = 8, .cpvs_per_cell = 3, .demand = 25.0});
+    std::vector<SelectionStep> steps;
+    SelectionConfig config{.guided_sweeps = 4, .exchange_rounds = 2, .recreate_trials = 20};
+    config.on_step = [&](const SelectionStep& step) { steps.push_back(step); };
+    const auto found = select_impostors(problem, config, {}, {});
+    std::vector<std::string> names;
+    for (const auto& step : steps) names.push_back(step.name);
+    ASSERT_EQ(names, (std::vector<std::string>{"greedy", "reverse-delete", "second greedy", "exchange", "ruin and recreate"}));
+    for (std::size_t k = 1; k < steps.size(); ++k) EXPECT_LE(steps[k].bytes, steps[k - 1].bytes) << steps[k].name << ", seed " << seed;
+    EXPECT_GT(steps[0].gains, 0U);
+    EXPECT_GT(steps[2].gains, steps[1].gains) << "the second greedy looks at gains";
+    EXPECT_EQ(steps.back().bytes, found.summary.bytes);
+    EXPECT_GE(found.summary.priced_bound_bytes, 0.5 * found.summary.lower_bound_bytes) << "seed " << seed;
+  }
 }
 
 TEST(SelectorLaws, FactoredAndExplicitGainsAreTheSameProblem) {

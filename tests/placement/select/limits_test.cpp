@@ -96,6 +96,31 @@ TEST(SelectionLimits, ASecondGreedyCutShortIsNamed) {
   }
 }
 
+TEST(SelectionLimits, NothingIsToldOfAGreedyCutShortAndABoundSurvives) {
+  const auto problem = instance(3);
+  std::vector<std::string> told;
+  SelectionConfig config{.guided_sweeps = 3, .bound_iterations = 0};
+  config.on_step = [&](const SelectionStep& step) { told.push_back(step.name); };
+  const auto whole = select_impostors(problem, config, {}, {});
+  ASSERT_EQ(told, (std::vector<std::string>{"greedy", "reverse-delete", "second greedy"}));
+  ASSERT_GT(whole.summary.priced_bound_bytes, 0.0);
+
+  told.clear();
+  config.most_gains = whole.summary.gains - 1;
+  const auto almost = select_impostors(problem, config, {}, {});
+  EXPECT_EQ(told.size(), 3U);
+  EXPECT_EQ(almost.summary.priced_bound_bytes, whole.summary.priced_bound_bytes) << "found before what was cut short";
+
+  told.clear();
+  config.most_gains = 1;
+  EXPECT_EQ(select_impostors(problem, config, {}, {}).summary.stop, SelectionSummary::Stop::kGreedyCutShort);
+  EXPECT_TRUE(told.empty());
+
+  config = {.guided_sweeps = 0, .on_step = config.on_step};
+  EXPECT_EQ(select_impostors(problem, config, {}, {}).summary.priced_bound_bytes, 0.0);
+  EXPECT_EQ(told, (std::vector<std::string>{"greedy", "reverse-delete"}));
+}
+
 TEST(SelectionLimits, SelectionsShareALimit) {
   const auto problem = instance(4);
   const auto whole = select_impostors(problem, all_steps(), {}, {});
