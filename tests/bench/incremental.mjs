@@ -82,7 +82,7 @@ for (const row of rows) {
   console.log(`| ${[row.name, ...counts, mine.toFixed(1), plain.toFixed(1), (mine / plain).toFixed(2), row.cpu.toFixed(1), row.plain.cpu.toFixed(1), (row.cpu / row.plain.cpu).toFixed(2), same(row) ? "yes" : "NO"].join(" | ")} |`);
 }
 console.log(`\n| stage, wall s | without a cache | ${rows.map((row) => row.name).join(" | ")} |\n|---|---|${rows.map(() => "---|").join("")}`);
-for (const stage of ["load", ...kCached, "survey", "candidates", "select", "assemble", "curves", "gpu_compression", "verify"])
+for (const stage of new Set(["load", ...kCached, ...Object.keys(full.metrics.stages_s)]))
   console.log(`| ${stage} | ${[full, ...rows].map((row) => (row.metrics.stages_s[stage] ?? 0).toFixed(2)).join(" | ")} |`);
 const { cache } = first.metrics;
 console.log(`\nThe first job's folder: ${(cache.folder_bytes / 1e6).toFixed(1)} MB: ${kStages.map(([stage, words]) => `${words} ${(cache[stage].bytes_written / 1e6).toFixed(2)} MB written`).join(", ")}.`);

@@ -49,7 +49,7 @@ for (const point of sweep.points)
   console.log(`| ${[point.budget_ms, point.cpv.count, point.cpv.unsolved, point.impostors, (point.texture_bytes / 1e3).toFixed(1), (point.memory_lower_bound_bytes / 1e3).toFixed(1), point.bakes.baked, point.bakes.recalled, point.seconds.toFixed(1)].join(" | ")} |`);
 
 console.log("\n| stage | shared by all budgets, s | all 10 budgets, s | tightest place alone, s |\n|---|---|---|---|");
-for (const stage of ["load", "view_space", "visibility", "size_model", "survey", "candidates", "select", "bake", "assemble", "curves", "gpu_compression", "verify"]) {
+for (const stage of new Set([...Object.keys(sweep.stages_s), ...Object.keys(place.stages_s)])) {
   const shared = sweep.shared_stages_s[stage] ?? 0, each = (sweep.stages_s[stage] ?? 0) - shared;
   console.log(`| ${stage} | ${shared.toFixed(1)} | ${each.toFixed(1)} | ${(place.stages_s[stage] ?? 0).toFixed(1)} |`);
 }

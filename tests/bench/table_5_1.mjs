@@ -4,10 +4,11 @@
 //     node tests/bench/table_5_1.mjs print WORK..
 //
 // BUILD is a build folder (build/release), WORK keeps what was run: a row that is there is not run again. Rows: `budgets` (1 to 5), 6 .. 16,
-// `ours`, `rectangular`, `per_cell` and `thesis_sharp` (for the ratios), `ours_as_maps` (ours at the times that environment maps reach, after
-// 15); none: all. The reference budget is the one at which the thesis' fixed subdivision has 9,078 problem views; rows 2 to 6 scale it as the
-// thesis scales its 16 ms. The sharp one is that of the same subdivision under our own bounds; the thesis' method has them there, too. Table
-// rows are points of `standin sweep`, which writes nothing to check; what ratios are taken of is placed, and scored by `standin check`.
+// `ours`, `rectangular`, `per_cell` (for the ratios at the reference budget) and these and `thesis` with `_sharp` (at the sharp one),
+// `ours_as_maps` (ours at the times that environment maps reach, after 15); none: all. The reference budget is the one at which the thesis' fixed
+// subdivision has 9,078 problem views; rows 2 to 6 scale it as the thesis scales its 16 ms. The sharp one is that of the same subdivision under
+// our own bounds; the thesis' method has them there, too. Table rows are points of `standin sweep`, which writes nothing to check; what ratios are
+// taken of is placed, and scored by `standin check`.
 import { spawnSync } from "node:child_process";
 import { existsSync, mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { dirname, join, resolve } from "node:path";
@@ -33,9 +34,10 @@ const FLAGS = {
 };
 const SWEPT_MS = [15, 16, 20, 25, 30];
 const SIDES_M = [15, 25, 50], FAR_FIELDS_M = [150, 300, 600, Infinity];  // the last: no maps
-// Ratios: what is placed at both reference budgets; the thesis' method at the first is row 1.
+// Ratios: what is placed at the two reference budgets; the thesis' method at the first is row 1.
 const PLACED = { ours: [], rectangular: config("rectangular"), per_cell: config("per_cell") };
-const SHARP = [...config("thesis"), "--region-bounds", "sample"];
+const SHARP = { ...PLACED, thesis: [...config("thesis"), "--region-bounds", "sample"] };
+const sharp = (name) => `${name}_sharp`;
 // What must hold and what is aimed at: bytes of the baseline over ours.
 const RATIOS = { thesis: [5, 15], per_cell: [1.5, 3], rectangular: [1.2, null] };
 
@@ -95,28 +97,26 @@ class Runs {
   }
 
   row(row) {
-    const references = () => [this.budget(16, "sharp_reference"), this.budget(16)];
+    const of = row.replace(/_sharp$/, "");
     if (row === "budgets") return this.sweep("budgets", SWEPT_MS.map((ms) => this.budget(ms)), ...config("thesis"));
     if (row === "15") return SIDES_M.map((side) => this.maps(side));
-    if (row === "thesis_sharp") return this.place(row, [references()[0]], ...SHARP);
     if (row === "ours_as_maps") return this.sweep(row, mapTimes(this.work));
-    if (row in PLACED) return this.place(row, references(), ...PLACED[row]);
+    if (row in PLACED) return this.place(row, this.budget(16), PLACED[row]);
+    if (row !== of && of in SHARP) return this.place(row, this.budget(16, "sharp_reference"), SHARP[of]);
     if (!(row in FLAGS)) throw new Error(`no row ${row}`);
     return this.sweep(`row_${row}`, [this.budget(THESIS[row][0])], ...config("thesis"), ...FLAGS[row]);
   }
 
-  /** Placed and checked at each budget; the same numbers as a sweep's. */
-  place(name, budgets, ...flags) {
-    const points = budgets.map((budget, i) =>
-      this.keep(`${name}_${i}`, () => {
-        const out = this.out(name);
-        launch(this.standin, "place", this.scene, "--target", target, "--budget-ms", `${budget}`, "--quiet", "--lods", "off", "--survey-views", "1000", "--verify-views", "0", "-o", out, ...flags, ...this.flags);
-        const { budget_ms, cpv, candidates, impostors, memory, stages_s } = read(join(out, "metrics.json"));
-        const { violations } = JSON.parse(launch(this.standin, "check", out, "--json"));
-        rmSync(out, { recursive: true });
-        return { budget_ms, cpv, candidates, impostors: impostors.count, texture_bytes: memory.texture_bytes, stages_s: seconds(stages_s), violations };
-      }));
-    return this.keep(name, () => ({ points }));
+  /** Placed and checked; the same numbers as a sweep's point. */
+  place(name, budget, flags) {
+    return this.keep(name, () => {
+      const out = this.out(name);
+      launch(this.standin, "place", this.scene, "--target", target, "--budget-ms", `${budget}`, "--quiet", "--lods", "off", "--survey-views", "1000", "--verify-views", "0", "-o", out, ...flags, ...this.flags);
+      const { budget_ms, cpv, candidates, impostors, memory, stages_s } = read(join(out, "metrics.json"));
+      const { violations } = JSON.parse(launch(this.standin, "check", out, "--json"));
+      rmSync(out, { recursive: true });
+      return { points: [{ budget_ms, cpv, candidates, impostors: impostors.count, texture_bytes: memory.texture_bytes, stages_s: seconds(stages_s), violations }] };
+    });
   }
 
   maps(side) {
@@ -159,15 +159,15 @@ function printMaps(work, what, thesis) {
   line("15", `${what} (25 m, 300 m)`, ...thesis.map(dash), "-", "-", "-", "-", `${like.cells} cells`, `${mb(like.bytes)} ± ${mb(like.bytes_standard_error)}`, "");
 }
 
-const pointsOf = (work, name) => kept(work, name)?.points ?? [0, 1].map((i) => kept(work, `${name}_${i}`)).filter(Boolean);
+const pointsOf = (work, name) => kept(work, name)?.points ?? [];
 const at = (work, name, budget) => pointsOf(work, name).find((one) => Math.abs(one.budget_ms - budget) < 1e-3);
 
 function printRatios(work, which) {
   const reference = kept(work, which);
   if (!reference) return;
-  const found = Object.fromEntries(Object.keys(PLACED).map((name) => [name, at(work, name, reference.budget_ms)]));
-  found.thesis = at(work, which === "reference" ? "budgets" : "thesis_sharp", reference.budget_ms);
-  const whose = which === "reference" ? "the thesis' bounds" : "our bounds";
+  const isSharp = which === "sharp_reference";
+  const found = Object.fromEntries(Object.keys(SHARP).map((name) => [name, at(work, isSharp ? sharp(name) : name in PLACED ? name : "budgets", reference.budget_ms)]));
+  const whose = isSharp ? "our bounds" : "the thesis' bounds";
   console.log(`\n| placed at ${reference.budget_ms.toFixed(2)} ms (9,078 CPVs in the fixed subdivision under ${whose}) | CPVs | unsolved | candidates | impostors | MB | over ours | must (aim) | check: violations |\n|---|---|---|---|---|---|---|---|---|`);
   for (const [name, one] of Object.entries(found)) {
     const [must, aim] = RATIOS[name] ?? [];
@@ -192,14 +192,18 @@ function printAllMaps(work) {
   const all = allMaps(work);
   if (all.length === 0) return;
   console.log("\n| cells, m | far field, m | cells (baked) | MB | standard error | walk: mean, worst, bound of the worst, ms | greatest bound of a region, ms | ours with that promise: MB, budget (CPVs unsolved) | maps over ours |\n|---|---|---|---|---|---|---|---|---|");
-  const points = ["ours_as_maps", "ours"].flatMap((name) => pointsOf(work, name));
+  const points = ["ours_as_maps", "ours", sharp("ours")].flatMap((name) => pointsOf(work, name));
   for (const maps of all)
     line(maps.side_m, maps.far_field_m ?? "no maps", `${maps.cells} (${maps.sampled})`, mb(maps.bytes), mb(maps.bytes_standard_error), [maps.walk_mean_ms, maps.walk_worst_ms, maps.walk_worst_bound_ms].map((ms) => ms.toFixed(1)).join(", "), maps.region_bound_ms.toFixed(1), ...asMaps(maps, points));
 }
 
 function print(work) {
-  const { scene, flags } = kept(work, "subject"), reference = kept(work, "reference");
-  console.log(`\n## ${scene}${flags.length ? `, all runs with \`${flags.join(" ")}\`` : ""}\n\nReference budget: ${reference.budget_ms.toFixed(2)} ms; highest bound of a region ${reference.worst_bound_ms.toFixed(2)} ms.\n`);
+  const { scene, flags } = kept(work, "subject");
+  console.log(`\n## ${scene}${flags.length ? `, all runs with \`${flags.join(" ")}\`` : ""}\n`);
+  for (const [which, whose] of [["reference", "Reference"], ["sharp_reference", "Sharp reference"]]) {
+    const reference = kept(work, which);
+    if (reference) console.log(`${whose} budget: ${reference.budget_ms.toFixed(2)} ms; highest bound of a region ${reference.worst_bound_ms.toFixed(2)} ms.\n`);
+  }
   line("test", "what", "thesis: CPVs", "candidates", "impostors", "MB", "ours: budget, ms", "CPVs", "of these unsolved", "candidates", "impostors", "MB", "s: view space + candidates + select + bake + assemble");
   console.log(`|${"---|".repeat(13)}`);
   for (const row of Object.keys(THESIS)) printRow(work, row);
@@ -214,6 +218,6 @@ if (command === "print") {
   const split = words.includes("--") ? words.indexOf("--") : words.length;
   const [build, scene, work, ...rows] = words.slice(0, split);
   const runs = new Runs(build, scene, work, words.slice(split + 1));
-  for (const row of rows.length ? rows : ["budgets", ...Object.keys(PLACED), "thesis_sharp", ...Object.keys(FLAGS), "15", "ours_as_maps"]) runs.row(row);
+  for (const row of rows.length ? rows : ["budgets", ...Object.keys(PLACED), ...Object.keys(SHARP).map(sharp), ...Object.keys(FLAGS), "15", "ours_as_maps"]) runs.row(row);
   print(work);
 }
