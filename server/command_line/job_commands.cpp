@@ -27,7 +27,7 @@ void print_survey(const json& metrics) {
   std::printf("worst view %.2f ms (p99 %.2f, p50 %.2f); highest bound of a region %.2f ms\n", number(metrics, "survey", "worst_frame_ms"),
               number(metrics, "survey", "p99_frame_ms"), number(metrics, "survey", "p50_frame_ms"),
               number(metrics, "survey", "worst_bound_ms"));
-  std::printf("reachable by impostors: %.2f ms for all views, %.2f for 99 %%, %.2f for 90 %%\n",
+  std::printf("reachable by impostors: %.2f ms for all views, at most %.2f for 99 %%, at most %.2f for 90 %%\n",
               number(metrics, "survey", "reachable_all_ms"), number(metrics, "survey", "reachable_p99_ms"),
               number(metrics, "survey", "reachable_p90_ms"));
   std::printf("%s\n", metrics["survey"]["verdict"].get<std::string>().c_str());

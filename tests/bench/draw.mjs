@@ -36,18 +36,20 @@ export function figureOfTable(csv, { title, y, log = "" }) {
   return { panels: [{ title, x: { label: header[0], log: log.includes("x") }, y: { label: y ?? header[1], log: log.includes("y") }, series }] };
 }
 
+// Title and error of each.
 const CURVES = {
-  estimator: "time model", visibility: "visible sets", view_space: "view space", select: "selection, after each of its steps", bake_rounds: "baking and repair", bake: "bake",
+  estimator: ["Time model", "median error, held out"], visibility: ["Visible sets", "certified missed share"], view_space: ["View space", "bound over worst view"],
+  select: ["Selection, step by step", "gap to its lower bound"], bake_rounds: ["Baking and repair", "texture bytes"], bake: ["Bake", "texel side, pixels"],
 };
 
 /** A panel for each curve that any of the jobs has; a point without error is left out where the axis is logarithmic. */
 export function figureOfCurves(jobs) {
-  const panels = Object.entries(CURVES).map(([curve, title]) => {
+  const panels = Object.entries(CURVES).map(([curve, [title, label]]) => {
     const points = Object.fromEntries(Object.entries(jobs).map(([name, metrics]) => [name, (metrics.curves?.[curve] ?? []).filter(({ seconds }) => seconds > 0)]));
     const errors = Object.values(points).flat().map(({ error }) => error).filter((error) => error > 0);
     const log = Math.max(...errors) > 20 * Math.min(...errors);
     return {
-      title, x: { label: "seconds", log: true }, y: { label: Object.values(points).flat()[0]?.unit.replace(/^.*: |, .*$/g, ""), log, zero: true },
+      title, x: { label: "seconds", log: true }, y: { label, log, zero: true },
       series: Object.entries(points).map(([name, all]) => [name, all.filter(({ error }) => error > 0 || !log)]).map(([name, list]) => ({ name, points: list.map(({ seconds, error }) => [seconds, error]), labels: list.map(({ step }) => step ?? "") })),
     };
   });

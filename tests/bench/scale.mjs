@@ -1,8 +1,8 @@
 // What each stage of `place` costs against the size of the scene: generated cities of equal density (ever more blocks of the same kind), each at
-// a budget of its own, since larger ones have slower views. The view space is where one can walk in the whole city or, with --square, in the square of
-// that side in its middle. Prints seconds by stage and the exponents of the power laws fitted to them (scale.md holds results).
+// a budget of its own, since larger ones have slower views. The view space is where one can walk in the whole city. Prints seconds by stage and
+// the exponents of the power laws fitted to them (scale.md holds results).
 //
-//     node tests/bench/scale.mjs build/release/server/standin WORK [--square METRES] OBJECTS:BUDGET_MS..
+//     node tests/bench/scale.mjs build/release/server/standin WORK OBJECTS:BUDGET_MS..
 //
 // WORK keeps each job's metrics: what is there is not run again. A stage's exponent is the slope of log seconds over log objects, by least
 // squares, over the sizes at which it took at least a tenth of a second.
@@ -10,17 +10,13 @@ import { spawnSync } from "node:child_process";
 import { existsSync, mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { dirname, join, resolve } from "node:path";
 import { fileURLToPath } from "node:url";
-import { parseArgs } from "node:util";
 
 const TRIANGLES_PER_OBJECT = 1967;  // our Vienna's
 const LEAST_SECONDS = 0.1;
 const source = resolve(dirname(fileURLToPath(import.meta.url)), "../..");
 const target = join(source, "configs/targets/reference.json");
-const { values, positionals } = parseArgs({ options: { square: { type: "string" } }, allowPositionals: true });
-const [binary, work] = positionals.slice(0, 2).map((path) => resolve(path));
-const side = Number(values.square ?? 0);
-if (!(side >= 0)) throw new Error(`--square ${values.square} violates: >= 0`);
-const jobs = positionals.slice(2).map((word) => word.split(":").map(Number));
+const [binary, work] = process.argv.slice(2, 4).map((path) => resolve(path));
+const jobs = process.argv.slice(4).map((word) => word.split(":").map(Number));
 const sizes = jobs.map(([objects]) => objects);
 
 function standin(...words) {
@@ -28,28 +24,13 @@ function standin(...words) {
   if (status !== 0 && status !== 1) throw new Error(`standin ${words.join(" ")}: ${stderr}`);
 }
 
-const clipped = ([x, y, z]) => [clamped(x), y, clamped(z)];
-const clamped = (x) => Math.min(Math.max(x, -side / 2), side / 2);
-
-/** Where one can walk in the square in the middle: of the boxes that a job finds which has nothing else to do. */
-function squareConfig(name, scene) {
-  const out = join(work, `${name}_walk`), config = join(work, `${name}.toml`);
-  standin("place", scene, "--target", target, "--budget-ms", "1e9", "--visibility", "off", "--lods", "off", "--verify-views", "0", "--quiet", "-o", out);
-  const { boxes } = JSON.parse(readFileSync(join(out, "placement.json"))).view_space;
-  rmSync(out, { recursive: true });
-  const inner = boxes.map(({ min, max }) => ({ min: clipped(min), max: clipped(max) })).filter(({ min, max }) => [0, 2].every((axis) => min[axis] < max[axis]));
-  if (inner.length === 0) throw new Error(`${name}: nowhere to walk within ${side} m`);
-  writeFileSync(config, `[view_space]\nkind = "boxes"\nboxes = [${inner.map(({ min, max }) => `{ min = [${min}], max = [${max}] }`).join(",\n")}]\n`);
-  return config;
-}
-
 /** A city of so many objects, placed; its metrics. Leaves keep their 23 m in cities of any size. */
 function placed([objects, budgetMs]) {
-  const name = `${objects}_at_${budgetMs}_ms${side > 0 ? `_in_${side}_m` : ""}`, kept = join(work, `${name}.json`);
+  const name = `${objects}_at_${budgetMs}_ms`, kept = join(work, `${name}.json`);
   if (!existsSync(kept)) {
     const scene = join(work, `${name}.glb`), out = join(work, name);
     standin("make-city", "--objects", `${objects}`, "--triangles", `${objects * TRIANGLES_PER_OBJECT}`, "--seed", "1", "-o", scene);
-    standin("place", scene, "--target", target, "--budget-ms", `${budgetMs}`, ...(side > 0 ? ["--config", squareConfig(name, scene)] : ["--max-leaves", "1000000"]), "--quiet", "-o", out);
+    standin("place", scene, "--target", target, "--budget-ms", `${budgetMs}`, "--max-leaves", "1000000", "--quiet", "-o", out);
     writeFileSync(kept, readFileSync(join(out, "metrics.json")));
     [scene, out].forEach((path) => rmSync(path, { recursive: true }));
   }

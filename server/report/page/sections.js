@@ -120,7 +120,7 @@ function curveFigure(name, points) {
   const chart = sorted.length < 2 ? null : lineChart({
     label: `${title}, ${unit}, against run time in seconds`, height: 230, xs: sorted.map((point) => point.seconds),
     x: { label: "seconds", format: (value) => significant(value, 3), log: wide("seconds") },
-    y: { label: unit, format: (value) => significant(value, 3), log: wide("error") },
+    y: { format: (value) => significant(value, 3), log: wide("error") },
     series: [{ name: unit || "error", colour: "--series-0", points: true, values: sorted.map((point) => point.error) }],
   });
   const columns = [
@@ -130,7 +130,7 @@ function curveFigure(name, points) {
     { title: `error${unit ? `, ${unit}` : ""}`, number: true, text: (point) => significant(point.error, 3) },
   ];
   const numbers = table(columns, sorted, `${title}: numbers`);
-  return element("figure", {}, element("h3", {}, title), chart, chart === null ? numbers : folded("Numbers", numbers));
+  return element("figure", {}, element("h3", {}, title), element("figcaption", {}, unit), chart, chart === null ? numbers : folded("Numbers", numbers));
 }
 
 function curvesSection({ metrics }) {
