@@ -10,7 +10,6 @@
 #include "render/base/parallel.h"
 #include "render/scene/level_errors.h"
 #include "render/scene/shared_borders.h"
-#include "render/scene/simplify_mesh.h"
 #include "render/scene/surface_deviation.h"
 #include "render/scene/textured_surface.h"
 
@@ -40,7 +39,8 @@ struct RangeLevel {
 
 class LevelMaker {
  public:
-  LevelMaker(Scene& scene, const LevelOptions& options, const WorkBudget& budget) : scene_(scene), options_(options), budget_(budget) {}
+  LevelMaker(Scene& scene, const LevelOptions& options, const WorkBudget& budget, const Simplify& simplify)
+      : scene_(scene), options_(options), budget_(budget), simplify_(simplify) {}
 
   LevelSummary run() {
     simplify_meshes();
@@ -75,7 +75,7 @@ class LevelMaker {
       options.lock_border = shared[meshes[i]];
       options.textured = textured[meshes[i]];
       options.budget = &budget_;
-      simple[i] = simplified(scene_.meshes[meshes[i]], options);
+      simple[i] = simplify_(scene_.meshes[meshes[i]], options);
     });
     for (std::size_t i = 0; i < meshes.size(); ++i) add_meshes(meshes[i], simple[i]);
   }
@@ -193,6 +193,7 @@ class LevelMaker {
   Scene& scene_;
   const LevelOptions& options_;
   const WorkBudget& budget_;
+  const Simplify& simplify_;
   LevelSummary summary_;
   std::map<std::uint32_t, std::vector<MeshLevel>> mesh_levels_;
   std::map<Authored, double> authored_error_m_;  // in the space of the meshes
@@ -249,8 +250,8 @@ std::vector<std::uint8_t> levels_from(const Scene& scene, std::span<const std::u
   return any ? levels : std::vector<std::uint8_t>();
 }
 
-LevelSummary add_object_levels(Scene& scene, const LevelOptions& options, const WorkBudget& budget) {
-  return LevelMaker(scene, options, budget).run();
+LevelSummary add_object_levels(Scene& scene, const LevelOptions& options, const WorkBudget& budget, const Simplify& simplify) {
+  return LevelMaker(scene, options, budget, simplify).run();
 }
 
 }  // namespace standin

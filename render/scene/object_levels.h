@@ -14,6 +14,7 @@
 
 #include "render/base/work.h"
 #include "render/scene/scene.h"
+#include "render/scene/simplify_mesh.h"
 
 namespace standin {
 
@@ -32,8 +33,8 @@ struct LevelSummary {
   std::uint64_t pieces = 0;  // of surface that the error bounds took
 };
 
-/// Fills in Object::levels, adding meshes and parts. The same for any number of threads.
-LevelSummary add_object_levels(Scene& scene, const LevelOptions& options, const WorkBudget& budget);
+/// Fills in Object::levels, adding meshes and parts. The same for any number of threads, several of which may call `simplify`.
+LevelSummary add_object_levels(Scene& scene, const LevelOptions& options, const WorkBudget& budget, const Simplify& simplify = simplified);
 
 /// A scene before it was given levels, to come back to.
 class LevelsAsLoaded {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "render/scene/textured_surface.h"
 
@@ -109,24 +110,32 @@ std::uint32_t best_member(const Mesh& mesh, const std::vector<std::uint32_t>& me
 }  // namespace
 
 Mesh mesh_over(const Mesh& mesh, const std::vector<std::vector<std::uint32_t>>& members, const std::vector<std::uint32_t>& corners) {
-  Mesh result;
-  result.name = mesh.name;
-  std::vector<std::uint32_t> place(mesh.positions.size(), 0xFFFFFFFFU);
+  std::vector<std::uint32_t> place(mesh.positions.size(), 0xFFFFFFFFU), source, indices;
   for (std::size_t i = 0; i + 2 < corners.size(); i += 3) {
     const auto corner = [&](std::size_t c) { return Vec3(mesh.positions[members[corners[i + c]].front()]); };
     const Vec3 normal = glm::cross(corner(1) - corner(0), corner(2) - corner(0));
     for (std::size_t c = 0; c < 3; ++c) {
       const std::uint32_t v = best_member(mesh, members[corners[i + c]], normal);
       if (place[v] == 0xFFFFFFFFU) {
-        place[v] = static_cast<std::uint32_t>(result.positions.size());
-        result.positions.push_back(mesh.positions[v]);
-        result.normals.push_back(mesh.normals[v]);
-        if (!mesh.uvs.empty()) result.uvs.push_back(mesh.uvs[v]);
-        result.source.push_back(v);
+        place[v] = static_cast<std::uint32_t>(source.size());
+        source.push_back(v);
       }
-      result.indices.push_back(place[v]);
+      indices.push_back(place[v]);
     }
   }
+  return mesh_of_vertices(mesh, std::move(source), std::move(indices));
+}
+
+Mesh mesh_of_vertices(const Mesh& mesh, std::vector<std::uint32_t> source, std::vector<std::uint32_t> indices) {
+  Mesh result;
+  result.name = mesh.name;
+  for (const std::uint32_t v : source) {
+    result.positions.push_back(mesh.positions[v]);
+    result.normals.push_back(mesh.normals[v]);
+    if (!mesh.uvs.empty()) result.uvs.push_back(mesh.uvs[v]);
+  }
+  result.source = std::move(source);
+  result.indices = std::move(indices);
   update_derived(result);
   return result;
 }

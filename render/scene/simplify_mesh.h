@@ -9,6 +9,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "render/base/work.h"
@@ -36,7 +37,13 @@ struct SimplifyOptions {
 [[nodiscard]] Mesh mesh_over(const Mesh& mesh, const std::vector<std::vector<std::uint32_t>>& members,
                              const std::vector<std::uint32_t>& corners);
 
+/// The vertices `source` of a mesh, with three `indices` into them for each triangle; derived values are up to date.
+[[nodiscard]] Mesh mesh_of_vertices(const Mesh& mesh, std::vector<std::uint32_t> source, std::vector<std::uint32_t> indices);
+
 /// From fine to coarse, ever fewer triangles and ever greater errors; none for a mesh of few triangles. Derived values are up to date.
 [[nodiscard]] std::vector<SimplifiedMesh> simplified(const Mesh& mesh, const SimplifyOptions& options);
+
+/// simplified(), or what knows its results.
+using Simplify = std::function<std::vector<SimplifiedMesh>(const Mesh& mesh, const SimplifyOptions& options)>;
 
 }  // namespace standin

@@ -11,10 +11,6 @@ Fingerprint triangles_of(const Mesh& mesh) {
   return Fingerprinter().add_list(mesh.positions).add_list(mesh.indices).fingerprint();
 }
 
-Fingerprint content_of(const Mesh& mesh) {
-  return Fingerprinter().add_list(mesh.positions).add_list(mesh.normals).add_list(mesh.uvs).add_list(mesh.indices).fingerprint();
-}
-
 Fingerprint content_of(const Texture& texture) {
   return Fingerprinter().add(texture.width).add(texture.height).add_list(texture.rgba).fingerprint();
 }
@@ -122,6 +118,10 @@ void add_ranks(const std::vector<std::int64_t>& numbers, Fingerprinter& to) {
 
 }  // namespace
 
+Fingerprint mesh_content(const Mesh& mesh) {
+  return Fingerprinter().add_list(mesh.positions).add_list(mesh.normals).add_list(mesh.uvs).add_list(mesh.indices).fingerprint();
+}
+
 std::vector<Fingerprint> ray_contents(const Scene& scene) {
   const auto meshes = each(scene.meshes, triangles_of);
   const MaskContents masks(scene);
@@ -144,7 +144,7 @@ std::vector<Fingerprint> cost_contents(const Scene& scene) {
 }
 
 std::vector<Fingerprint> look_contents(const Scene& scene) {
-  const auto meshes = each(scene.meshes, [](const Mesh& mesh) { return content_of(mesh); });
+  const auto meshes = each(scene.meshes, mesh_content);
   const auto textures = each(scene.textures, [](const Texture& texture) { return content_of(texture); });
   const auto materials = each(scene.materials, [&](const Material& material) { return content_of(material, textures); });
   return each(scene.objects, [&](const Object& object) {

@@ -13,6 +13,8 @@
 
 namespace standin {
 
+/// Positions, normals, texture coordinates and triangles of a mesh alone.
+[[nodiscard]] Fingerprint mesh_content(const Mesh& mesh);
 /// For rays (render/visibility): place, triangles, and what of them a mask lets through. No levels of detail.
 [[nodiscard]] std::vector<Fingerprint> ray_contents(const Scene& scene);
 /// For the features of estimation/feature_table.h: place, meshes, how parts are drawn, levels of detail. No colours.

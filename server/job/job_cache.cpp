@@ -3,6 +3,7 @@
 #include "render/base/build_identity.h"
 #include "server/cache/bake_cache.h"
 #include "server/cache/search_cache.h"
+#include "server/cache/simplified_cache.h"
 #include "server/cache/visible_set_cache.h"
 
 namespace standin {
@@ -15,8 +16,11 @@ struct NamedStage {
   const CacheStage* stage;
   const char* results;
 };
-constexpr NamedStage kStages[] = {
-    {&kVisibleSets, "visible sets"}, {&kVisibilityAudits, "visibility audits"}, {&kSearches, "direction searches"}, {&kBakes, "bakes"}};
+constexpr NamedStage kStages[] = {{&kVisibleSets, "visible sets"},
+                                  {&kVisibilityAudits, "visibility audits"},
+                                  {&kSimplified, "simplified meshes"},
+                                  {&kSearches, "direction searches"},
+                                  {&kBakes, "bakes"}};
 
 json to_json(const CacheCounts& counts) {
   return {{"hits", counts.hits}, {"misses", counts.misses}, {"bytes_read", counts.bytes_read}, {"bytes_written", counts.bytes_written}};

@@ -8,6 +8,7 @@
 #include "placement/view_space/cell_boxes.h"
 #include "render/base/sha256.h"
 #include "render/view/level_camera.h"
+#include "server/cache/simplified_cache.h"
 #include "server/job/world.h"
 
 namespace standin {
@@ -90,10 +91,10 @@ std::string percent(double share) {
 }
 
 /// Simplified without a look at errors, which are mostly greater than meshoptimizer says: so no less is saved, hardly ever.
-double share_that_may_be_saved(World& world, LevelOptions options, const WorkBudget& budget) {
+double share_that_may_be_saved(World& world, LevelOptions options, const Simplify& simplify, const WorkBudget& budget) {
   const LevelsAsLoaded before(world.scene);
   options.measure = false;
-  (void)add_object_levels(world.scene, options, budget);
+  (void)add_object_levels(world.scene, options, budget, simplify);
   const double share = saved_share(world);
   before.restore(world.scene);
   return share;
@@ -118,15 +119,15 @@ bool has_levels(const Object& object) {
 }
 
 /// Says why not, where levels are not worth it.
-std::string give_levels(const JobSpec& spec, World& world, const WorkBudget& budget) {
+std::string give_levels(const JobSpec& spec, World& world, const Simplify& simplify, const WorkBudget& budget) {
   const LevelOptions options = level_options(spec, world.camera, world.threads);
   const bool asked_for = spec.lods == "on";
   if (!asked_for && !forced(spec, "lods"))
-    if (const double share = share_that_may_be_saved(world, options, budget); share < kWorthwhile)
+    if (const double share = share_that_may_be_saved(world, options, simplify, budget); share < kWorthwhile)
       return "a probe found that " + too_little(share);
   LodFigures& lods = world.lods;
   const LevelsAsLoaded before(world.scene);
-  lods.levels = add_object_levels(world.scene, options, budget);
+  lods.levels = add_object_levels(world.scene, options, budget, simplify);
   if (lods.levels.objects == 0) return "no object has a simpler form";
   keep_what_is_worth_its_bytes(world);
   lods.levels.objects = static_cast<std::uint32_t>(std::ranges::count_if(world.scene.objects, has_levels));
@@ -152,9 +153,9 @@ void leave_lods_out(const std::string& why, const JobSpec& spec, World& world, S
   if (!forced(spec, "lods")) clock.leave_out("lods", why);
 }
 
-void add_lods(const JobSpec& spec, World& world, StageClock& clock, const WorkBudget& budget) {
+void add_lods(const JobSpec& spec, World& world, StageCache* cache, StageClock& clock, const WorkBudget& budget) {
   if (spec.lods == "off") return remove_all_levels(world.scene);
-  const std::string why_not = clock.run("lods", [&] { return give_levels(spec, world, budget); });
+  const std::string why_not = clock.run("lods", [&] { return give_levels(spec, world, simplified_through(cache), budget); });
   if (!world.lods.used) leave_lods_out(why_not, spec, world, clock);
 }
 

@@ -16,6 +16,7 @@
 
 namespace standin {
 
+class StageCache;
 struct World;
 
 struct LodFigures {
@@ -27,8 +28,9 @@ struct LodFigures {
 };
 
 [[nodiscard]] LevelOptions level_options(const JobSpec& spec, const Camera& camera, int threads);
-/// Stage lods: gives the world's scene its levels, or takes away those it came with. Needs the view space and the visible sets.
-void add_lods(const JobSpec& spec, World& world, StageClock& clock, const WorkBudget& budget);
+/// Stage lods: gives the world's scene its levels, or takes away those it came with. Needs the view space and the visible sets. `cache`: of
+/// simplified meshes, or none.
+void add_lods(const JobSpec& spec, World& world, StageCache* cache, StageClock& clock, const WorkBudget& budget);
 /// Takes the levels away again, and says why.
 void leave_lods_out(const std::string& why, const JobSpec& spec, World& world, StageClock& clock);
 /// metrics.json: lods

@@ -206,7 +206,7 @@ void build_world(const std::filesystem::path& scene_file, const JobSpec& spec, S
   });
   for (const auto& sentence : world.view_space.left_out) clock.leave_out("view_space", sentence);
   clock.run("visibility", [&] { add_visibility(spec, world, cache, clock, budget); });
-  add_lods(spec, world, clock, budget);
+  add_lods(spec, world, cache, clock, budget);
   world.quality = quality_of(spec, world.view_space.kind);
   world.quality.leave_out = !forced(spec, "bake");
   if (cache != nullptr) world.bake_cache = std::make_unique<BakeCache>(*cache, world.scene, world.camera, world.quality);

@@ -70,8 +70,8 @@ for (const [name, file, budgetMs, plain] of [["the same again", scene, budget, f
   rows.push({ ...placeAgain(name, file, budgetMs), plain: plain ?? place(`${name}, without`, file, budgetMs) });
 
 const same = (row) => ["placement.json", "impostors.glb"].every((file) => readFileSync(join(path(row.name), file)).equals(readFileSync(join(path(row.plain.name), file))));
-const kStages = [["visible_sets", "visible sets"], ["searches", "searches"], ["bakes", "bakes"]];
-const kCached = ["visibility", "view_space", "size_model", "bake"];
+const kStages = [["visible_sets", "visible sets"], ["simplified", "simplified meshes"], ["searches", "searches"], ["bakes", "bakes"]];
+const kCached = ["visibility", "lods", "view_space", "size_model", "bake"];
 const sum = (metrics, stages) => stages.reduce((total, stage) => total + (metrics.stages_s[stage] ?? 0), 0);
 
 console.log(`| job | ${kStages.map(([, words]) => `${words} made / reused`).join(" | ")} | stages with a cache, s | without, s | ratio | processor, s | without, s | ratio | same bytes |`);
