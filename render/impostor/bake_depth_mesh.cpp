@@ -43,12 +43,12 @@ DepthMeshImpostor bake_depth_mesh(const Scene& scene, const TexturePyramids& tex
     lattice = lattice_of(recording.images, mesh_quality.ring);
     return initial_depth_mesh(lattice, Sheets::kSeen);
   });
-  const SimplifiedMesh simplified = timed(summary.simplify_s, [&] {
+  const SimplifiedDepthMesh simplified = timed(summary.simplify_s, [&] {
     const LatticeDepths depths = lattice_depths(recording.layers);
     const auto surface_depth = [&](std::uint32_t x, std::uint32_t y, std::uint32_t layer) {
       return depths.of_metres(depth_m(recording.images[layer].get(x, y), recording.layers[layer]));
     };
-    SimplifiedMesh mesh = simplify(initial, lattice, depths, surface_depth, mesh_quality.enlargement, budget);
+    SimplifiedDepthMesh mesh = simplify(initial, lattice, depths, surface_depth, mesh_quality.enlargement, budget);
     widen_borders(mesh, mesh_quality.margin);
     return mesh;
   });

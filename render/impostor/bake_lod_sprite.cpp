@@ -23,9 +23,9 @@ Layer one_layer(const std::vector<Layer>& layers) {
 
 /// Charts are laid out on the lattice of depth meshes. Its third axis is logarithmic in depth here, so that one step is about a texel of
 /// the image in all three directions, at any depth.
-SimplifiedMesh on_lattice(const SpriteMesh& mesh, const ImpostorFrame& frame, double near_m) {
+SimplifiedDepthMesh on_lattice(const SpriteMesh& mesh, const ImpostorFrame& frame, double near_m) {
   const auto half_steps = [](double texels) { return static_cast<std::int32_t>(std::lround(2.0 * texels)); };
-  SimplifiedMesh result;
+  SimplifiedDepthMesh result;
   result.triangles = mesh.triangles;
   for (const Vec3& offset : mesh.vertices) {
     const double depth = glm::dot(offset, frame.forward);

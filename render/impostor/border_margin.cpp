@@ -26,7 +26,7 @@ struct BorderEdge {
 
 }  // namespace
 
-void widen_borders(SimplifiedMesh& mesh, double margin) {
+void widen_borders(SimplifiedDepthMesh& mesh, double margin) {
   std::map<std::pair<std::uint32_t, std::uint32_t>, BorderEdge> edges;
   for (const TriangleCorners& t : mesh.triangles)
     for (std::size_t i = 0; i < 3; ++i) {

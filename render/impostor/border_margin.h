@@ -10,10 +10,10 @@
 namespace standin {
 
 /// Sets `shifts`, so that border edges lie `margin` (texels and layers) farther out; at sharp corners vertices move by twice that at most.
-void widen_borders(SimplifiedMesh& mesh, double margin);
+void widen_borders(SimplifiedDepthMesh& mesh, double margin);
 
 /// Where a vertex lies: texel coordinates, and depth in half layers.
-[[nodiscard]] inline Vec3 shifted_place(const SimplifiedMesh& mesh, std::uint32_t v) {
+[[nodiscard]] inline Vec3 shifted_place(const SimplifiedDepthMesh& mesh, std::uint32_t v) {
   const Vec3 place(texel_coordinates(mesh.vertices[v]), mesh.vertices[v].depth);
   return mesh.shifts.empty() ? place : place + mesh.shifts[v];
 }

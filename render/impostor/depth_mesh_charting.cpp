@@ -44,13 +44,13 @@ bool faces(const std::array<LatticeVertex, 3>& t, const LatticeNormal& n, const 
   return along >= 0 && high - low <= 2;
 }
 
-Vec2 chart_coordinates(const SimplifiedMesh& mesh, std::uint32_t v, int axis) {
+Vec2 chart_coordinates(const SimplifiedDepthMesh& mesh, std::uint32_t v, int axis) {
   const Vec3 place = shifted_place(mesh, v);
   return {axis == 0 ? 0.5 * place.z : place.x, axis == 1 ? 0.5 * place.z : place.y};
 }
 
 /// Neighbours of each triangle over its edges, three lists one after the other in order of ids.
-std::vector<std::vector<std::uint32_t>> neighbours_over_edges(const SimplifiedMesh& mesh) {
+std::vector<std::vector<std::uint32_t>> neighbours_over_edges(const SimplifiedDepthMesh& mesh) {
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<std::uint32_t>> triangles_of_edge;
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
     for (std::size_t i = 0; i < 3; ++i) {
@@ -111,7 +111,7 @@ struct Turn {
 /// ends where none saves anything.
 class Charting {
  public:
-  Charting(const SimplifiedMesh& mesh, double scale, std::uint32_t max_side)
+  Charting(const SimplifiedDepthMesh& mesh, double scale, std::uint32_t max_side)
       : mesh_(mesh),
         scale_(scale),
         max_side_(max_side),
@@ -261,7 +261,7 @@ class Charting {
     return open;
   }
 
-  const SimplifiedMesh& mesh_;
+  const SimplifiedDepthMesh& mesh_;
   double scale_;
   std::uint32_t max_side_;
   std::vector<std::vector<std::uint32_t>> neighbours_;
@@ -278,7 +278,7 @@ class Charting {
 
 }  // namespace
 
-std::vector<ChartDraft> charts_of(const SimplifiedMesh& mesh, double texels_per_voxel, std::uint32_t max_side) {
+std::vector<ChartDraft> charts_of(const SimplifiedDepthMesh& mesh, double texels_per_voxel, std::uint32_t max_side) {
   return Charting(mesh, texels_per_voxel, max_side).run();
 }
 

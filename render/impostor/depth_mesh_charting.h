@@ -16,6 +16,6 @@ struct ChartDraft {
 
 /// Every triangle is in one chart. Charts grow over edges as long as that saves texels; no texel centre is in two triangles
 /// of one.
-[[nodiscard]] std::vector<ChartDraft> charts_of(const SimplifiedMesh& mesh, double texels_per_voxel, std::uint32_t max_side);
+[[nodiscard]] std::vector<ChartDraft> charts_of(const SimplifiedDepthMesh& mesh, double texels_per_voxel, std::uint32_t max_side);
 
 }  // namespace standin

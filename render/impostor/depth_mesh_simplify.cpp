@@ -125,8 +125,8 @@ class Simplifier {
     }
   }
 
-  [[nodiscard]] SimplifiedMesh result() {
-    SimplifiedMesh mesh;
+  [[nodiscard]] SimplifiedDepthMesh result() {
+    SimplifiedDepthMesh mesh;
     std::vector<std::uint32_t> id(complex_.vertex_count(), kNone);
     for (std::uint32_t t = 0; t < complex_.triangle_count(); ++t) {
       if (!complex_.alive(t)) continue;
@@ -303,8 +303,8 @@ class Simplifier {
 
 }  // namespace
 
-SimplifiedMesh simplify(const DepthMesh& mesh, const VoxelLattice& lattice, const LatticeDepths& depths, const SurfaceDepth& surface_depth,
-                        double enlargement, const WorkBudget& budget) {
+SimplifiedDepthMesh simplify(const DepthMesh& mesh, const VoxelLattice& lattice, const LatticeDepths& depths,
+                             const SurfaceDepth& surface_depth, double enlargement, const WorkBudget& budget) {
   Simplifier simplifier(mesh, lattice, depths, surface_depth, enlargement);
   simplifier.run(budget);
   simplifier.drop_needless_parts();

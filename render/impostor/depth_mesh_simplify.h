@@ -16,7 +16,7 @@
 
 namespace standin {
 
-struct SimplifiedMesh {
+struct SimplifiedDepthMesh {
   std::vector<LatticeVertex> vertices;
   std::vector<Vec3> shifts;  // of vertices from their places: texels, texels, half layers; empty: none (see border_margin.h)
   std::vector<TriangleCorners> triangles;
@@ -24,7 +24,7 @@ struct SimplifiedMesh {
 
 /// `enlargement` in [1, 2] of the voxels; `surface_depth` says where in its layer a voxel's surface lies. Order, and so the result, depends
 /// on the arguments alone.
-[[nodiscard]] SimplifiedMesh simplify(const DepthMesh& mesh, const VoxelLattice& lattice, const LatticeDepths& depths,
-                                      const SurfaceDepth& surface_depth, double enlargement, const WorkBudget& budget = {});
+[[nodiscard]] SimplifiedDepthMesh simplify(const DepthMesh& mesh, const VoxelLattice& lattice, const LatticeDepths& depths,
+                                           const SurfaceDepth& surface_depth, double enlargement, const WorkBudget& budget = {});
 
 }  // namespace standin

@@ -78,7 +78,7 @@ double distance_at(std::span<const Layer> layers, double half_layers) {
 
 }  // namespace
 
-TexturedMesh textured(const SimplifiedMesh& mesh, std::span<const LayerImage> images, const VoxelLattice& lattice,
+TexturedMesh textured(const SimplifiedDepthMesh& mesh, std::span<const LayerImage> images, const VoxelLattice& lattice,
                       const ImpostorFrame& frame, std::span<const Layer> layers, const TextureOptions& options,
                       std::vector<std::uint8_t>& texels) {
   std::vector<Vec3> offsets;

@@ -21,7 +21,7 @@ struct TextureOptions {
 
 /// Appends the charts' blocks to `texels`. `images` are the recorded layers that `lattice` came from; of near voxels those that can be seen
 /// are preferred.
-[[nodiscard]] TexturedMesh textured(const SimplifiedMesh& mesh, std::span<const LayerImage> images, const VoxelLattice& lattice,
+[[nodiscard]] TexturedMesh textured(const SimplifiedDepthMesh& mesh, std::span<const LayerImage> images, const VoxelLattice& lattice,
                                     const ImpostorFrame& frame, std::span<const Layer> layers, const TextureOptions& options,
                                     std::vector<std::uint8_t>& texels);
 

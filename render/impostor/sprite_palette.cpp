@@ -14,7 +14,7 @@ constexpr double kMostSamples = 64.0;  // along an edge
 
 using Rgba = std::array<std::uint8_t, 4>;
 
-double longest_edge_texels(const SimplifiedMesh& on_lattice, const TriangleCorners& t) {
+double longest_edge_texels(const SimplifiedDepthMesh& on_lattice, const TriangleCorners& t) {
   double longest = 0.0;
   for (std::size_t i = 0; i < 3; ++i) {
     const LatticeVertex &from = on_lattice.vertices[t[i]], &to = on_lattice.vertices[t[(i + 1) % 3]];
@@ -51,7 +51,7 @@ std::map<Rgba, std::uint32_t> places_of(std::span<const PlainColour> plain) {
 
 }  // namespace
 
-std::vector<PlainColour> plain_colours(const SpriteMesh& mesh, const SimplifiedMesh& on_lattice, const SampleColour& colour,
+std::vector<PlainColour> plain_colours(const SpriteMesh& mesh, const SimplifiedDepthMesh& on_lattice, const SampleColour& colour,
                                        const WorkBudget& budget) {
   std::vector<PlainColour> plain;
   for (const TriangleCorners& t : mesh.triangles) {

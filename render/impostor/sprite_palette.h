@@ -17,8 +17,8 @@ namespace standin {
 using PlainColour = std::optional<std::array<std::uint8_t, 4>>;  // nothing: not plain
 
 /// Of each triangle. `on_lattice`: the same mesh, in half texels.
-[[nodiscard]] std::vector<PlainColour> plain_colours(const SpriteMesh& mesh, const SimplifiedMesh& on_lattice, const SampleColour& colour,
-                                                     const WorkBudget& budget = {});
+[[nodiscard]] std::vector<PlainColour> plain_colours(const SpriteMesh& mesh, const SimplifiedDepthMesh& on_lattice,
+                                                     const SampleColour& colour, const WorkBudget& budget = {});
 
 /// Appends the plain triangles to `chart`, with their block to `texels`. Nothing where there are none.
 void append_palette(const SpriteMesh& mesh, std::span<const PlainColour> plain, TexturedMesh& chart, std::vector<std::uint8_t>& texels);

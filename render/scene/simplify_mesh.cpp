@@ -140,9 +140,13 @@ Mesh mesh_of_vertices(const Mesh& mesh, std::vector<std::uint32_t> source, std::
   return result;
 }
 
+bool may_be_simplified(const Mesh& mesh) {
+  return mesh.triangle_count() >= kFewestTriangles;
+}
+
 std::vector<SimplifiedMesh> simplified(const Mesh& mesh, const SimplifyOptions& options) {
   std::vector<SimplifiedMesh> levels;
-  if (mesh.triangle_count() < kFewestTriangles) return levels;
+  if (!may_be_simplified(mesh)) return levels;
   const TexturedSurface original(mesh, options.textured);
   const Joined joined = join(mesh, original.kept());
   if (joined.indices.empty()) return levels;

@@ -37,8 +37,12 @@ struct SimplifyOptions {
 [[nodiscard]] Mesh mesh_over(const Mesh& mesh, const std::vector<std::vector<std::uint32_t>>& members,
                              const std::vector<std::uint32_t>& corners);
 
-/// The vertices `source` of a mesh, with three `indices` into them for each triangle; derived values are up to date.
+/// The vertices `source` of a mesh (numbers below that of its positions), with three `indices` into them for each triangle; derived values
+/// are up to date.
 [[nodiscard]] Mesh mesh_of_vertices(const Mesh& mesh, std::vector<std::uint32_t> source, std::vector<std::uint32_t> indices);
+
+/// False for a mesh of so few triangles that simplified() gives no form of it.
+[[nodiscard]] bool may_be_simplified(const Mesh& mesh);
 
 /// From fine to coarse, ever fewer triangles and ever greater errors; none for a mesh of few triangles. Derived values are up to date.
 [[nodiscard]] std::vector<SimplifiedMesh> simplified(const Mesh& mesh, const SimplifyOptions& options);

@@ -2,7 +2,7 @@
 //
 // Objects, meshes and materials have numbers, and an object that is inserted shifts the numbers of all that follow. So a result is named by
 // what the objects that it looked at hold, as far as that stage looks: a ray sees triangles and masks, a time bound no colours, a bake
-// everything. One fingerprint per object each; names of objects and meshes are in none.
+// everything. One fingerprint per object each, and of meshes alone one that goes with them; names of objects and meshes are in none.
 #pragma once
 
 #include <span>

@@ -1,7 +1,7 @@
 #include "server/cache/simplified_cache.h"
 
-#include <algorithm>
 #include <string>
+#include <utility>
 
 #include "server/cache/object_content.h"
 
@@ -52,19 +52,23 @@ std::vector<SimplifiedMesh> read_forms(ByteReader& bytes, const Mesh& mesh) {
 }
 
 std::vector<SimplifiedMesh> recall_or_simplify(StageCache& cache, const Mesh& mesh, const SimplifyOptions& options) {
+  if (!may_be_simplified(mesh)) return {};
   const Fingerprint inputs = simplified_inputs(mesh, options);
-  if (auto known = cache.recall(kSimplified, inputs, [&](ByteReader& bytes) { return read_forms(bytes, mesh); })) return *std::move(known);
+  if (auto known = cache.recall(kSimplifiedMeshes, inputs, [&](ByteReader& bytes) { return read_forms(bytes, mesh); }))
+    return *std::move(known);
   std::vector<SimplifiedMesh> forms = simplified(mesh, options);
-  cache.keep(kSimplified, inputs, bytes_of(forms));
+  cache.keep(kSimplifiedMeshes, inputs, bytes_of(forms));
   return forms;
 }
 
 }  // namespace
 
 Fingerprint simplified_inputs(const Mesh& mesh, const SimplifyOptions& options) {
+  const auto& [textured, lock_border, measure, least_saving, pieces_per_triangle, budget] = options;  // a new one must be added below
+  static_cast<void>(budget);
   Fingerprinter to;
-  to.add(mesh_content(mesh)).add(options.textured).add(options.lock_border).add(options.measure);
-  return to.add(options.least_saving).add(options.pieces_per_triangle).fingerprint();
+  to.add(mesh_content(mesh)).add(textured).add(lock_border).add(measure).add(least_saving).add(pieces_per_triangle);
+  return to.fingerprint();
 }
 
 Simplify simplified_through(StageCache* cache) {

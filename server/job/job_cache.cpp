@@ -18,7 +18,7 @@ struct NamedStage {
 };
 constexpr NamedStage kStages[] = {{&kVisibleSets, "visible sets"},
                                   {&kVisibilityAudits, "visibility audits"},
-                                  {&kSimplified, "simplified meshes"},
+                                  {&kSimplifiedMeshes, "simplified meshes"},
                                   {&kSearches, "direction searches"},
                                   {&kBakes, "bakes"}};
 

@@ -58,7 +58,7 @@ struct World {
   int threads = 1;
 };
 
-/// Stages load, view_space, visibility and lods. `cache`: of visible sets and bakes, or none.
+/// Stages load, view_space, visibility and lods. `cache`: of visible sets, simplified meshes and bakes, or none.
 void build_world(const std::filesystem::path& scene_file, const JobSpec& spec, StageClock& clock, const WorkBudget& budget, World& world,
                  StageCache* cache = nullptr);
 

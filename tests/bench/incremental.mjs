@@ -70,12 +70,12 @@ for (const [name, file, budgetMs, plain] of [["the same again", scene, budget, f
   rows.push({ ...placeAgain(name, file, budgetMs), plain: plain ?? place(`${name}, without`, file, budgetMs) });
 
 const same = (row) => ["placement.json", "impostors.glb"].every((file) => readFileSync(join(path(row.name), file)).equals(readFileSync(join(path(row.plain.name), file))));
-const kStages = [["visible_sets", "visible sets"], ["simplified", "simplified meshes"], ["searches", "searches"], ["bakes", "bakes"]];
+const kStages = [["visible_sets", "visible sets"], ["simplified_meshes", "simplified meshes"], ["searches", "searches"], ["bakes", "bakes"]];
 const kCached = ["visibility", "lods", "view_space", "size_model", "bake"];
 const sum = (metrics, stages) => stages.reduce((total, stage) => total + (metrics.stages_s[stage] ?? 0), 0);
 
 console.log(`| job | ${kStages.map(([, words]) => `${words} made / reused`).join(" | ")} | stages with a cache, s | without, s | ratio | processor, s | without, s | ratio | same bytes |`);
-console.log("|---|---|---|---|---|---|---|---|---|---|---|");
+console.log(`|${"---|".repeat(kStages.length + 8)}`);
 for (const row of rows) {
   const counts = kStages.map(([stage]) => `${row.metrics.cache[stage].misses} / ${row.metrics.cache[stage].hits}`);
   const mine = sum(row.metrics, kCached), plain = sum(row.plain.metrics, kCached);

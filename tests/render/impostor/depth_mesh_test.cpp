@@ -23,7 +23,7 @@ std::vector<BitImage> random_stack(Rng& rng, std::uint32_t side, std::size_t lay
 
 const SurfaceDepth kAtPlane = [](std::uint32_t, std::uint32_t, std::uint32_t layer) { return static_cast<double>(layer); };
 
-SimplifiedMesh simplified(const DepthMesh& mesh, const VoxelLattice& lattice, double enlargement) {
+SimplifiedDepthMesh simplified(const DepthMesh& mesh, const VoxelLattice& lattice, double enlargement) {
   return simplify(mesh, lattice, uniform_depths(lattice.layers.size()), kAtPlane, enlargement);
 }
 
@@ -109,7 +109,7 @@ TEST(DepthMesh, NoRayReachesAnOpaqueCellUnblocked) {
   EXPECT_GT(reached, 300);
 }
 
-std::map<std::pair<std::uint32_t, std::uint32_t>, int> triangles_per_edge(const SimplifiedMesh& mesh) {
+std::map<std::pair<std::uint32_t, std::uint32_t>, int> triangles_per_edge(const SimplifiedDepthMesh& mesh) {
   std::map<std::pair<std::uint32_t, std::uint32_t>, int> count;
   for (const TriangleCorners& t : mesh.triangles)
     for (std::size_t i = 0; i < 3; ++i) ++count[std::minmax(t[i], t[(i + 1) % 3])];
@@ -122,7 +122,7 @@ TEST(DepthMesh, SimplificationCoversEveryVoxelAndNothingElse) {
     for (const double enlargement : {1.0, 1.5}) {
       const VoxelLattice lattice = unculled_lattice(random_stack(rng, 8, 4, rng.uniform(0.4, 0.97)));
       const DepthMesh initial = initial_depth_mesh(lattice, Sheets::kAll);
-      const SimplifiedMesh mesh = simplified(initial, lattice, enlargement);
+      const SimplifiedDepthMesh mesh = simplified(initial, lattice, enlargement);
       EXPECT_LT(mesh.triangles.size(), 2 * initial.polygons.size() + 1);
       const auto meets = [&](std::uint32_t x, std::uint32_t y, std::size_t k) {
         return std::any_of(mesh.triangles.begin(), mesh.triangles.end(), [&](const TriangleCorners& t) {
@@ -165,7 +165,7 @@ TEST(DepthMesh, AFullLayerIsTwoTriangles) {
   EXPECT_EQ(initial.meshes, 1U);
   EXPECT_LE(simplified(initial, lattice, 1.0).triangles.size(), 14U);  // the border of the second layer is seen past the first's
   const VoxelLattice one = voxel_lattice({full}, 2);
-  const SimplifiedMesh mesh = simplified(initial_depth_mesh(one, Sheets::kSeen), one, 1.0);
+  const SimplifiedDepthMesh mesh = simplified(initial_depth_mesh(one, Sheets::kSeen), one, 1.0);
   ASSERT_EQ(mesh.triangles.size(), 2U);
   Vec2 low(1e9), high(-1e9);
   for (const LatticeVertex& v : mesh.vertices) low = glm::min(low, texel_coordinates(v)), high = glm::max(high, texel_coordinates(v));
@@ -199,7 +199,7 @@ TEST(DepthMesh, AnOpenHoleStaysOpen) {
     for (std::uint32_t x = 0; x < 20; ++x)
       if (x < 8 || x > 10 || y < 8 || y > 10) holed.set(x, y);
   const VoxelLattice lattice = voxel_lattice({holed}, 2);
-  const SimplifiedMesh mesh = simplified(initial_depth_mesh(lattice, Sheets::kSeen), lattice, 1.4);
+  const SimplifiedDepthMesh mesh = simplified(initial_depth_mesh(lattice, Sheets::kSeen), lattice, 1.4);
   EXPECT_GE(mesh.triangles.size(), 6U);
   const Vec2 middle(9.5);
   for (const TriangleCorners& t : mesh.triangles) {
@@ -217,7 +217,7 @@ TEST(DepthMesh, BordersAreWidenedInTheirPlane) {
   for (std::uint32_t y = 0; y < 8; ++y)
     for (std::uint32_t x = 0; x < 10; ++x) full.set(x, y);
   const VoxelLattice lattice = voxel_lattice({full}, 2);
-  SimplifiedMesh mesh = simplified(initial_depth_mesh(lattice, Sheets::kSeen), lattice, 1.0);
+  SimplifiedDepthMesh mesh = simplified(initial_depth_mesh(lattice, Sheets::kSeen), lattice, 1.0);
   widen_borders(mesh, 0.25);
   Vec3 low(1e9), high(-1e9);
   for (std::uint32_t v = 0; v < mesh.vertices.size(); ++v)

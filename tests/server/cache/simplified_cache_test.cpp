@@ -2,9 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <functional>
 #include <set>
+#include <utility>
+#include <vector>
 
+#include "render/scene/level_file.h"
+#include "server/cache/object_content.h"
 #include "tests/render/scene/level_meshes.h"
 #include "tests/support/temp_folder.h"
 
@@ -14,10 +19,9 @@ namespace {
 void expect_same(const std::vector<SimplifiedMesh>& a, const std::vector<SimplifiedMesh>& b) {
   ASSERT_EQ(a.size(), b.size());
   for (std::size_t k = 0; k < a.size(); ++k) {
-    EXPECT_EQ(a[k].mesh.positions, b[k].mesh.positions) << k;
-    EXPECT_EQ(a[k].mesh.normals, b[k].mesh.normals) << k;
-    EXPECT_EQ(a[k].mesh.uvs, b[k].mesh.uvs) << k;
-    EXPECT_EQ(a[k].mesh.indices, b[k].mesh.indices) << k;
+    EXPECT_EQ(mesh_content(a[k].mesh), mesh_content(b[k].mesh)) << k;
+    EXPECT_EQ(a[k].mesh.simplified_from, b[k].mesh.simplified_from) << k;
+    EXPECT_EQ(a[k].mesh.is_piece, b[k].mesh.is_piece) << k;
     EXPECT_EQ(a[k].mesh.source, b[k].mesh.source) << k;
     EXPECT_EQ(a[k].mesh.name, b[k].mesh.name) << k;
     EXPECT_EQ(a[k].mesh.bounds.min, b[k].mesh.bounds.min) << k;
@@ -35,7 +39,7 @@ class SimplifiedCaches : public test::TempFolder {
   std::vector<SimplifiedMesh> cached(const Mesh& mesh, const SimplifyOptions& options = {}) {
     StageCache cache(root_, fingerprint_of("build"));
     auto forms = simplified_through(&cache)(mesh, options);
-    counts_ = cache.figures().stages["simplified"];
+    counts_ = cache.figures().stages["simplified_meshes"];
     return forms;
   }
 
@@ -44,9 +48,9 @@ class SimplifiedCaches : public test::TempFolder {
 
 TEST_F(SimplifiedCaches, AreWhatSimplifyingWouldMake) {
   std::uint64_t forms = 0;
-  for (const Mesh& mesh : {test::ball(12), test::sheet(), test::ball(2)})
-    for (const bool measure : {true, false}) {
-      const SimplifyOptions options{.measure = measure};
+  for (const Mesh& mesh : {test::ball(12), test::sheet()})
+    for (const SimplifyOptions& options :
+         {SimplifyOptions{}, SimplifyOptions{.textured = false}, SimplifyOptions{.lock_border = true}, SimplifyOptions{.measure = false}}) {
       const auto fresh = simplified(mesh, options);
       forms += fresh.size();
       expect_same(cached(mesh, options), fresh);
@@ -58,12 +62,42 @@ TEST_F(SimplifiedCaches, AreWhatSimplifyingWouldMake) {
   EXPECT_GE(forms, 4U);
 }
 
-TEST_F(SimplifiedCaches, ANameIsNoInputAndTheNewOneIsTaken) {
+TEST_F(SimplifiedCaches, WhatAMeshIsCalledAndWasMadeFromIsNoInput) {
   Mesh mesh = test::ball(12);
   static_cast<void>(cached(mesh));
   mesh.name = "renamed";
+  mesh.is_piece = true;
+  for (std::uint32_t v = 0; v < mesh.positions.size(); ++v) mesh.source.push_back(7 * v);
   expect_same(cached(mesh), simplified(mesh, {}));
   EXPECT_EQ(counts_.hits, 1U);
+}
+
+TEST_F(SimplifiedCaches, MeshesTooSmallForAnyFormAreNoEntries) {
+  EXPECT_TRUE(cached(test::ball(2)).empty());
+  EXPECT_EQ(counts_.hits + counts_.misses, 0U);
+}
+
+TEST_F(SimplifiedCaches, WhatIsCancelledLeavesNothing) {
+  std::atomic<bool> stop = true;
+  const WorkBudget cancelled(&stop);
+  EXPECT_THROW(static_cast<void>(cached(test::ball(12), {.budget = &cancelled})), Failure);
+  expect_same(cached(test::ball(12)), simplified(test::ball(12), {}));
+  EXPECT_EQ(counts_.misses, 1U);
+}
+
+TEST_F(SimplifiedCaches, LevelsOfASceneAreTheSameOnSeveralThreads) {
+  const auto levels_of = [&](const Simplify& simplify, int threads) {
+    Scene scene = test::scene_of_placed({test::ball(12), test::sheet(), test::ball(9)}, {{0, Mat4(1.0)}, {1, Mat4(1.0)}, {2, Mat4(1.0)}});
+    LevelOptions options = test::kLevelOptions;
+    options.threads = threads;
+    add_object_levels(scene, options, {}, simplify);
+    return write_levels(scene).glb;
+  };
+  StageCache cache(root_, fingerprint_of("build"));
+  const std::string fresh = levels_of(simplified, 1);
+  EXPECT_EQ(levels_of(simplified_through(&cache), 3), fresh);
+  EXPECT_EQ(levels_of(simplified_through(&cache), 2), fresh);
+  EXPECT_EQ(cache.figures().stages["simplified_meshes"].hits, 3U);
 }
 
 TEST_F(SimplifiedCaches, WithoutACacheItIsSimplifying) {
@@ -109,7 +143,7 @@ TEST_F(SimplifiedCaches, AnEntryThatFitsNoSuchMeshIsMadeAgain) {
     bytes.value(std::uint64_t{1});
     bytes.list(source);
     bytes.list(indices);
-    StageCache(root_, fingerprint_of("build")).keep(kSimplified, inputs, bytes.bytes());
+    StageCache(root_, fingerprint_of("build")).keep(kSimplifiedMeshes, inputs, bytes.bytes());
     expect_same(cached(mesh), simplified(mesh, {}));
     EXPECT_EQ(counts_.misses, 1U);
   }
