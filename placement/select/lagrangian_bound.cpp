@@ -236,17 +236,17 @@ bool improve(BytesSplit& split, double aim_bytes, int iterations, const WorkBudg
   return finished;
 }
 
-bool improve_by(const TightConstraints& rows, BytesSplit& split, double known_bytes, int iterations, const WorkBudget& budget,
+bool improve_by(const TightConstraints& tight, BytesSplit& split, double known_bytes, int iterations, const WorkBudget& budget,
                 SelectionWork& work) {
   for (std::size_t count = 1;; count *= 2) {
     const double before = split.best_value();
     if (count > 1 && work.exhausted()) return false;
     const std::uint64_t work_before = split.work();
-    split.add(rows.tightest(count), kMostBoundGains, budget);
+    split.add(tight.tightest(count), kMostBoundGains, budget);
     work.spend(split.work() - work_before);
     if (!improve(split, known_bytes, iterations, budget, work)) return false;
     const bool gained = split.best_value() - before >= kWorthwhileGain * known_bytes;
-    if (count >= rows.most() || split.gains() >= kMostBoundGains || (count >= kLeastTightest && !gained)) return true;
+    if (count >= tight.most() || split.gains() >= kMostBoundGains || (count >= kLeastTightest && !gained)) return true;
   }
 }
 

@@ -101,7 +101,7 @@ bool improve(BytesSplit& split, double aim_bytes, int iterations, const WorkBudg
 /// Lets the tightest constraints of a known solution of `known_bytes` pay, then twice as many, and so on, as long as that gains anything
 /// and is affordable: the best split of few constraints is found soon, and the search goes on from there. `iterations`: of improve(), each
 /// time constraints are added. Returns false when the work limit ended it.
-bool improve_by(const TightConstraints& rows, BytesSplit& split, double known_bytes, int iterations, const WorkBudget& budget,
+bool improve_by(const TightConstraints& tight, BytesSplit& split, double known_bytes, int iterations, const WorkBudget& budget,
                 SelectionWork& work);
 
 }  // namespace standin

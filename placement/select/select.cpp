@@ -209,14 +209,14 @@ class Selector {
   }
 
   [[nodiscard]] TightConstraints tight_constraints() {
-    TightConstraints rows(problem_);
+    TightConstraints tight(problem_);
     for (std::uint32_t p = 0; p < problem_.cpv_count(); ++p) {
       if (ignored_[p]) continue;
       budget_.check();
-      rows.see(p, cover_->best(p).members);
+      tight.see(p, cover_->best(p).members);
     }
-    rows.sort();
-    return rows;
+    tight.sort();
+    return tight;
   }
 
   [[nodiscard]] std::string met_message() const {

@@ -25,10 +25,10 @@ std::vector<std::uint32_t> TightConstraints::tightest(std::size_t count) const {
   for (const auto& uses : uses_)
     taken.insert(taken.end(), uses.begin(), uses.begin() + static_cast<std::ptrdiff_t>(std::min(count, uses.size())));
   std::ranges::sort(taken);
-  std::vector<std::uint32_t> rows;
-  for (const Use& use : taken) rows.push_back(use.constraint);
-  rows.erase(std::unique(rows.begin(), rows.end()), rows.end());  // uses of one constraint are equally tight
-  return rows;
+  std::vector<std::uint32_t> constraints;
+  for (const Use& use : taken) constraints.push_back(use.constraint);
+  constraints.erase(std::unique(constraints.begin(), constraints.end()), constraints.end());  // uses of one constraint are equally tight
+  return constraints;
 }
 
 std::size_t TightConstraints::most() const {

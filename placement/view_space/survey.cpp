@@ -17,6 +17,7 @@ namespace {
 
 constexpr std::size_t kMostCauses = 8;
 constexpr std::size_t kViewsPerTask = 64;
+constexpr std::size_t kViewsPerCheck = 100'000;
 // Streams of the generator: views of the two kinds never share one.
 constexpr std::uint64_t kUniformStream = 0;
 constexpr std::uint64_t kHotStream = std::uint64_t{1} << 40;
@@ -26,6 +27,17 @@ Vec3 uniform_direction(Rng& rng) {
   const double azimuth = rng.uniform(0.0, 2.0 * std::numbers::pi);
   const double radius = std::sqrt(std::max(0.0, 1.0 - y * y));
   return glm::normalize(Vec3(radius * std::cos(azimuth), y, radius * std::sin(azimuth)));
+}
+
+/// Room for so many views. Memory of millions takes seconds, in which a job may be told to stop.
+std::vector<SurveyedView> unsampled_views(std::size_t count, const WorkBudget& budget) {
+  std::vector<SurveyedView> views;
+  views.reserve(count);
+  while (views.size() < count) {
+    budget.check();
+    views.resize(std::min(count, views.size() + kViewsPerCheck));
+  }
+  return views;
 }
 
 CellLocator locate_cells(const ViewSpace& space, const Subdivision& subdivision) {
@@ -81,7 +93,7 @@ class Surveyor {
   [[nodiscard]] SurveyedView survey_view(const View& view, std::uint32_t cell) const { return {view, cell, predict(view, cell)}; }
 
   [[nodiscard]] std::vector<SurveyedView> uniform_views() const {
-    std::vector<SurveyedView> views(options_.views);
+    std::vector<SurveyedView> views = unsampled_views(options_.views, budget_);
     parallel_for((views.size() + kViewsPerTask - 1) / kViewsPerTask, options_.threads, budget_, [&](std::size_t task) {
       for (std::size_t i = task * kViewsPerTask; i < std::min(views.size(), (task + 1) * kViewsPerTask); ++i) {
         Rng rng(options_.seed, kUniformStream + i);

@@ -28,7 +28,7 @@ const place = (out, ...longer) => ["place", city, ...smallJob.filter((flag) => f
 const kStages = {
   visibility: ["--visibility", "on", "--visibility-rays", "100000000"],
   size_model: ["--size-bakes", "10000", "--texel-scale", "0.1"],
-  survey: ["--survey-views", "1000000"],
+  survey: ["--survey-views", "10000000"],
   verify: ["--verify-views", "20000"],
 };
 
