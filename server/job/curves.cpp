@@ -141,7 +141,7 @@ json select_curve(const SelectedImpostors& selected) {
   if (!(bound_bytes > 0.0)) return curve;
   for (const auto& [step, seconds] : selected.first_steps) {
     curve.push_back(point(seconds, static_cast<double>(step.gains), (step.bytes - bound_bytes) / step.bytes,
-                          "first selection: gap to the lower bound at the same sizes, share of the bytes"));
+                          "share of the first selection's bytes above the bound behind its prices, after each step"));
     curve.back()["step"] = step.name;
   }
   return curve;

@@ -108,7 +108,7 @@ function atlasSection({ pictures }) {
 
 const CURVE_TITLES = {
   estimator: "Time model: held-out error", visibility: "Visibility: certified missed share of rays", view_space: "View space: how loose the bounds are",
-  candidates: "Candidates: memory", select: "First selection: gap to the lower bound behind its prices", bake_rounds: "Baking and repair: memory", bake: "Bake: texel size",
+  candidates: "Candidates: memory", select: "Selection: gap to the lower bound", bake_rounds: "Baking and repair: memory", bake: "Bake: texel size",
 };
 
 function curveFigure(name, points) {
