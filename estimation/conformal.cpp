@@ -8,7 +8,7 @@
 namespace standin {
 namespace {
 
-constexpr std::size_t kMaxSteps = 5;
+constexpr std::size_t kMaxSteps = 10;
 // A prediction of nothing says nothing; it would make every ratio infinite.
 constexpr double kLeastPredictedMs = 1e-6;
 
@@ -48,7 +48,7 @@ double raise_for_groups(const std::vector<HeldOut>& held_out, const std::vector<
 /// Where the steps begin in the sorted frames, and their end; equal predictions stay in one step.
 std::vector<std::size_t> step_borders(const std::vector<HeldOut>& sorted, double coverage) {
   std::size_t steps = kMaxSteps;
-  while (steps > 1 && sorted.size() / steps < 3 * least_frames_for(coverage)) --steps;
+  while (steps > 1 && sorted.size() / steps < 2 * least_frames_for(coverage)) --steps;
   std::vector<std::size_t> borders = {0};
   for (std::size_t i = 1; i < steps; ++i) {
     const double predicted_ms = sorted[i * sorted.size() / steps].predicted_ms;

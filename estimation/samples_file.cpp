@@ -14,6 +14,8 @@ namespace {
 
 constexpr std::string_view kFormat = "# standin.samples 2";
 
+constexpr std::string_view kScenes = "# scenes: ";  // the line is there where scenes were named
+
 constexpr std::size_t kOwnColumns = 6;  // before the features
 
 std::string text_of(double value) {
@@ -105,8 +107,8 @@ void write_samples(const CalibrationSamples& samples, const std::filesystem::pat
   const Machine& machine = samples.machine;
   std::string text = std::string(kFormat) + "\n# device: " + one_line(machine.device) + "\n# renderer: " + one_line(machine.renderer) +
                      "\n# gl_version: " + one_line(machine.gl_version) + "\n# processor: " + one_line(machine.processor) +
-                     "\n# reference_ms: " + text_of(machine.reference_ms) + "\n# clock: " + one_line(machine.clock) + "\n" + header() +
-                     "\n";
+                     "\n# reference_ms: " + text_of(machine.reference_ms) + "\n# clock: " + one_line(machine.clock) + "\n" +
+                     (samples.scenes.empty() ? "" : std::string(kScenes) + one_line(samples.scenes) + "\n") + header() + "\n";
   for (const TimedFrame& frame : samples.frames) {
     text += std::to_string(frame.group) + (frame.designed ? ",1" : ",0");
     for (const double value : {frame.milliseconds, frame.spread, frame.seconds, frame.passed_pixels}) text += "," + text_of(value);
@@ -130,7 +132,12 @@ CalibrationSamples read_samples(const std::filesystem::path& file) {
   samples.machine.clock = read_value(lines, "clock");
   if (samples.machine.clock != "thread_cpu" && samples.machine.clock != "wall")
     lines.fail("clock \"" + samples.machine.clock + "\" violates: thread_cpu or wall");
-  if (const std::string_view row = lines.next(); row != header()) lines.fail("the header violates: is \"" + header() + "\"");
+  std::string_view row = lines.next();
+  if (row.starts_with(kScenes)) {
+    samples.scenes = row.substr(kScenes.size());
+    row = lines.next();
+  }
+  if (row != header()) lines.fail("the header violates: is \"" + header() + "\"");
   while (!lines.at_end()) samples.frames.push_back(read_frame(lines, lines.next()));
   return samples;
 }

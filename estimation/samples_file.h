@@ -14,6 +14,7 @@ namespace standin {
 
 struct CalibrationSamples {
   Machine machine;
+  std::string scenes;  // names of those that were asked about, with commas between; empty: the built-in ones
   std::vector<TimedFrame> frames;
 };
 

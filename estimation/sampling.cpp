@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <deque>
-#include <numeric>
 #include <optional>
 #include <tuple>
 
@@ -30,9 +29,14 @@ constexpr std::uint64_t kMaxBakedTriangles = 30'000;  // baking is not what the 
 constexpr double kEyeHeight_m = 1.7;
 constexpr int kAttempts = 8;
 constexpr int kBusySteps = 12;
-constexpr double kOneKindShare = 0.4;     // of clusters
-constexpr double kJustOutside = 1.1;      // bounding radii
-constexpr double kLeastTriangles = 1e5;   // however small a scene is, it does not take more turns than one of so many
+constexpr double kOneKindShare = 0.4;    // of clusters
+constexpr double kJustOutside = 1.1;     // bounding radii
+constexpr double kLeastTriangles = 1e5;  // however small a scene is, it does not take more turns than one of so many
+constexpr double kUnculled = 2e5;        // triangles; of frames with more, visible sets leave what is seen
+constexpr double kLargeScene = 1e6;      // triangles
+constexpr int kSeeingRays = 1 << 15;
+constexpr double kSeenFrom = 0.005;       // of the scene's diagonal, about the eye
+constexpr double kBusyReach = 0.03;       // likewise: in large scenes, what hides most of the rest
 constexpr std::size_t kWarmUpFrames = 8;  // one of each kind: compiles the shaders
 
 double log_uniform(Rng& rng, double low, double high) {
@@ -50,6 +54,13 @@ std::array<double, 6> work_of(const Features& features) {
 bool is_light(const Features& features) {
   const auto work = work_of(features);
   return std::all_of(work.begin(), work.end(), [](double share) { return share < 1.0; });
+}
+
+/// Roughly, and on a software renderer: which of two frames takes longer.
+double likely_ms(const Features& features) {
+  const double pixels = features[Term::kPlainPixels] + features[Term::kTexturedPixels] + features[Term::kMaskedPixels];
+  return features[Term::kDraws] / 500.0 + features[Term::kTriangles] / 7e4 + features[Term::kOnScreenTriangles] / 2.5e4 +
+         features[Term::kEdgePixels] / 7e4 + pixels / 7e4;
 }
 
 Vec3 random_direction(Rng& rng, double min_sine, double max_sine) {
@@ -110,6 +121,7 @@ class FrameSampler {
     if (frame % 40 == 0) return {street_view(), {}};
     Setup drawn = draw(frame % 8);
     for (int attempt = 1; attempt < kAttempts && is_light(features(drawn)); ++attempt) drawn = draw(frame % 8);
+    if (features(drawn)[Term::kTriangles] > kUnculled) keep_what_is_seen(drawn);
     return drawn;
   }
 
@@ -148,6 +160,17 @@ class FrameSampler {
   }
 
  private:
+  /// Leaves the objects that rays from around the eye meet, as the visible set of a 3D cell would.
+  void keep_what_is_seen(Setup& setup) {
+    const double reach_m = kSeenFrom * scene_.bounds.diagonal();
+    std::vector<bool> seen(scene_.objects.size(), false);
+    for (int ray = 0; ray < kSeeingRays; ++ray) {
+      const Vec3 origin = setup.view.position + reach_m * Vec3(rng_.uniform(-1.0, 1.0), 0.0, rng_.uniform(-1.0, 1.0));
+      if (const auto hit = raytracer_.nearest(origin, random_direction(rng_, -1.0, 1.0))) seen[hit->object] = true;
+    }
+    std::erase_if(setup.list.objects, [&](std::uint32_t object) { return !seen[object]; });
+  }
+
   /// A node of about log-uniformly many objects.
   [[nodiscard]] const HierarchyNode& random_node() {
     const double wanted = log_uniform(rng_, 1.0, static_cast<double>(scene_.objects.size()));
@@ -200,20 +223,43 @@ class FrameSampler {
     return view_towards(rng_, scene_.bounds.centre() + distance_m * random_direction(rng_, 0.0, 0.9), scene_.bounds.centre(), camera_);
   }
 
-  /// The busiest of a few, then of a few steps from it: what an optimizer asks about are the slowest views, and a model that is fitted on
-  /// others alone is wrong about those (tests/bench/time_model.md).
+  /// The busiest of a few beside heavy objects, then of a few steps from it: what an optimizer asks about are the slowest views, and a
+  /// model that is fitted on others alone is wrong about those (tests/bench/time_model.md).
   [[nodiscard]] View busy_street_view() {
-    const auto work = [&](const View& view) {
-      const auto kinds = work_of(table_.frame(all_objects_, view));
-      return std::accumulate(kinds.begin(), kinds.end(), 0.0);
-    };
     View busiest = street_view();
-    double most = work(busiest);
+    double most = likely_ms(busiest);
     for (int step = 0; step < kBusySteps; ++step) {
-      const View other = step < kBusySteps / 2 ? street_view() : beside(busiest);
-      if (const double asked = work(other); asked > most) std::tie(busiest, most) = std::pair(other, asked);
+      const View other = beside(step < kBusySteps / 2 ? view_of_heavy_object() : busiest);
+      if (const double asked = likely_ms(other); asked > most) std::tie(busiest, most) = std::pair(other, asked);
     }
     return busiest;
+  }
+
+  /// Of what is drawn from there; in large scenes, of what is near.
+  [[nodiscard]] double likely_ms(const View& view) const {
+    if (static_cast<double>(scene_.triangle_count()) <= kLargeScene) return standin::likely_ms(table_.frame(all_objects_, view));
+    const double reach_m = kBusyReach * scene_.bounds.diagonal();
+    std::vector<std::uint32_t> near = all_objects_;
+    std::erase_if(near, [&](std::uint32_t id) { return distance(view.position, scene_.objects[id].bounds) > reach_m; });
+    return standin::likely_ms(table_.frame(near, view));
+  }
+
+  /// At eye height beside an object, with a chance that is its share of the scene's triangles.
+  [[nodiscard]] View view_of_heavy_object() {
+    const View street = street_view();
+    if (is_exhibit(scene_)) return street;
+    std::uint64_t triangle = rng_.below(scene_.triangle_count());
+    const auto heavy = std::find_if(scene_.objects.begin(), scene_.objects.end(), [&](const Object& object) {
+      const bool found = triangle < object.triangle_count;
+      triangle -= found ? 0 : object.triangle_count;
+      return found;
+    });
+    const Vec3 centre = heavy->bounds.centre();
+    const double away_m = rng_.uniform(0.3, 1.0) * heavy->bounds.diagonal();
+    const Vec3 direction = random_direction(rng_, 0.0, 0.0);
+    const Vec3 position(centre.x + away_m * direction.x, street.position.y, centre.z + away_m * direction.z);
+    if (!is_open(position) || !scene_.bounds.contains(position)) return street;
+    return {position, glm::normalize(centre - position)};
   }
 
   /// A few metres and degrees away on the same level; the same view where nobody could stand.
@@ -305,13 +351,11 @@ class FrameSampler {
   std::vector<Box> impostor_bounds_;
 };
 
-/// A scene that is timed.
+/// A scene that is timed. Of two, the one twice as large takes half as many turns.
 class Source {
  public:
-  Source(const Scene& scene, Context& context, const Camera& camera, std::uint64_t seed, const WorkBudget& budget)
-      : sampler_(scene, camera, seed, budget),
-        renderer_(context, scene, camera),
-        size_(std::sqrt(std::max(kLeastTriangles, static_cast<double>(scene.triangle_count())))) {
+  Source(const Scene& scene, double size, Context& context, const Camera& camera, std::uint64_t seed, const WorkBudget& budget)
+      : sampler_(scene, camera, seed, budget), renderer_(context, scene, camera), size_(size) {
     renderer_.upload(sampler_.impostors());
     for (std::size_t frame = 0; frame < kWarmUpFrames; ++frame) draw(sampler_.setup(frame));
   }
@@ -338,6 +382,20 @@ class Source {
   std::size_t frames_ = 0;
 };
 
+/// Frames of larger scenes take longer. The designed scene takes no more turns than all others together: it tells costs apart, what they
+/// are is to be learned from the others.
+std::vector<double> sizes_of(std::span<const TrainingScene> scenes) {
+  std::vector<double> sizes;
+  double turns = 0.0;
+  for (const TrainingScene& one : scenes) {
+    sizes.push_back(std::sqrt(std::max(kLeastTriangles, static_cast<double>(one.scene.triangle_count()))));
+    if (!one.designed) turns += 1.0 / sizes.back();
+  }
+  for (std::size_t i = 0; i < scenes.size(); ++i)
+    if (scenes[i].designed && turns > 0.0) sizes[i] = std::max(sizes[i], 1.0 / turns);
+  return sizes;
+}
+
 }  // namespace
 
 std::vector<TimedFrame> sample_frames(std::span<const TrainingScene> scenes, Context& context, FrameTimer& timer, const Camera& camera,
@@ -345,7 +403,8 @@ std::vector<TimedFrame> sample_frames(std::span<const TrainingScene> scenes, Con
   if (!(options.seconds > 0.0)) throw Failure(ErrorWord::kBadUsage, "calibration seconds are " + std::to_string(options.seconds));
   if (scenes.empty()) throw Failure(ErrorWord::kBadUsage, "calibration: no scene to time");
   std::deque<Source> sources;
-  for (const TrainingScene& one : scenes) sources.emplace_back(one.scene, context, camera, options.seed, budget);
+  const std::vector<double> sizes = sizes_of(scenes);
+  for (std::size_t i = 0; i < scenes.size(); ++i) sources.emplace_back(scenes[i].scene, sizes[i], context, camera, options.seed, budget);
   std::vector<TimedFrame> frames;
   double spent_s = 0.0, next_look_s = kLookEvery_s;
   while (spent_s < options.seconds && frames.size() < kMaxFrames * scenes.size()) {

@@ -13,17 +13,6 @@
 namespace standin {
 namespace {
 
-// The scenes that were named, or cities that differ in seed, size and triangles per object.
-std::vector<TrainingScene> real_scenes(const CommandContext& context) {
-  std::vector<TrainingScene> scenes;
-  for (const auto& file : context.arguments.scenes) scenes.push_back({load_scene(file, load_options(context.spec))});
-  if (!scenes.empty()) return scenes;
-  scenes.push_back({make_city({300, 500'000, 101})});
-  scenes.push_back({make_city({900, 700'000, 102})});
-  scenes.push_back({make_city({1500, 2'950'000, 103})});
-  return scenes;
-}
-
 // As CAD programs deliver theirs: no textures, and back sides that nobody draws.
 Scene without_textures(Scene scene) {
   for (Material& material : scene.materials) {
@@ -34,11 +23,18 @@ Scene without_textures(Scene scene) {
   return scene;
 }
 
-// What real scenes leave confounded, the designed one tells apart; and the bound is to hold for scenes without textures, too.
-std::vector<TrainingScene> training_scenes(const CommandContext& context) {
-  std::vector<TrainingScene> scenes = real_scenes(context);
-  scenes.push_back({without_textures(make_city({400, 600'000, 104}))});
-  scenes.push_back({make_designed_scene(), true});
+// Cities that differ in seed, size and triangles per object.
+std::vector<TrainingScene> built_in_cities() {
+  std::vector<TrainingScene> scenes;
+  scenes.push_back({make_city({300, 500'000, 101})});
+  scenes.push_back({make_city({900, 700'000, 102})});
+  scenes.push_back({make_city({1500, 2'950'000, 103})});
+  return scenes;
+}
+
+std::vector<TrainingScene> named_scenes(const CommandContext& context) {
+  std::vector<TrainingScene> scenes;
+  for (const auto& file : context.arguments.scenes) scenes.push_back({load_scene(file, load_options(context.spec))});
   return scenes;
 }
 
@@ -48,6 +44,12 @@ DeviceKind device_of(const JobSpec& spec) {
 
 CalibrationOptions options_of(const CommandContext& context) {
   return {.seconds = context.arguments.seconds, .seed = context.spec.seed, .count_passed_pixels = !context.arguments.samples.empty()};
+}
+
+std::string names_of(const std::vector<TrainingScene>& scenes) {
+  std::string names;
+  for (const TrainingScene& one : scenes) names += (names.empty() ? "" : ", ") + one.scene.name;
+  return names;
 }
 
 CalibrationSamples time_samples(const std::vector<TrainingScene>& scenes, const CommandContext& context, const Target* target) {
@@ -77,20 +79,37 @@ CalibrationSamples time_samples(const std::vector<TrainingScene>& scenes, const 
   return samples;
 }
 
+// What real scenes leave confounded, the designed one tells apart. Who names scenes asks about these; otherwise the bound is to hold for
+// scenes without textures, too.
+CalibrationSamples training_samples(const CommandContext& context) {
+  std::vector<TrainingScene> scenes = named_scenes(context);
+  const std::string names = names_of(scenes);
+  if (scenes.empty()) {
+    scenes = built_in_cities();
+    scenes.push_back({without_textures(make_city({400, 600'000, 104}))});
+  }
+  scenes.push_back({make_designed_scene(), true});
+  CalibrationSamples samples = time_samples(scenes, context, nullptr);
+  samples.scenes = names;
+  return samples;
+}
+
 int evaluate_target(const CommandContext& context) {
   const Target target = read_target(context.arguments.evaluate);
-  const CalibrationSamples samples = time_samples(real_scenes(context), context, &target);
+  const std::vector<TrainingScene> named = named_scenes(context);
+  const CalibrationSamples samples = time_samples(named.empty() ? built_in_cities() : named, context, &target);
   if (!context.arguments.samples.empty()) write_samples(samples, context.arguments.samples);
   const Evaluation result = evaluate(target.model, samples.frames);
   print_evaluation(result, target.model.coverage, context.arguments.json);
   return result.misses <= most_misses(result.frames, target.model.coverage) ? 0 : 1;
 }
 
-Target make_target(const FitSummary& fit, const Machine& machine, std::vector<LearningPoint> curve) {
+Target make_target(const FitSummary& fit, const CalibrationSamples& samples, std::vector<LearningPoint> curve) {
+  const Machine& machine = samples.machine;
   Target target;
   target.model = fit.model;
   target.machine = machine;
-  target.id = machine.device + " on " + machine.processor;
+  target.id = machine.device + " on " + machine.processor + (samples.scenes.empty() ? "" : " for " + samples.scenes);
   target.samples = fit.frames;
   target.median_error = fit.median_error;
   target.p90_error = fit.p90_error;
@@ -117,12 +136,12 @@ int calibrate_command(const CommandContext& context) {
   } else {
     const TimingLock lock(context.budget);
     if (!arguments.evaluate.empty()) return evaluate_target(context);
-    samples = time_samples(training_scenes(context), context, nullptr);
+    samples = training_samples(context);
   }
   if (!arguments.samples.empty()) write_samples(samples, arguments.samples);
   const FitSummary fit = fit_time_model(samples.frames, arguments.coverage);
   const std::vector<LearningPoint> curve = learning_curve(samples.frames, arguments.coverage);
-  write_target(make_target(fit, samples.machine, curve), arguments.output);
+  write_target(make_target(fit, samples, curve), arguments.output);
   print_fit(fit, curve, arguments.explain, arguments.json);
   return arguments.target_error > 0.0 && !accurate_enough(fit, arguments.target_error) ? 1 : 0;
 }

@@ -55,7 +55,8 @@ class SamplesFile : public test::TempFolder {
 };
 
 TEST_F(SamplesFile, ReadsBackBitForBit) {
-  const CalibrationSamples samples = random_samples(7, 500);
+  CalibrationSamples samples = random_samples(7, 500);
+  samples.scenes = "a hall.glb, machines.obj";
   const std::string bytes = written(samples);
   const CalibrationSamples read = read_samples(file);
   ASSERT_EQ(read.frames.size(), samples.frames.size());
@@ -71,7 +72,13 @@ TEST_F(SamplesFile, ReadsBackBitForBit) {
   EXPECT_EQ(read.machine.processor, samples.machine.processor);
   EXPECT_EQ(read.machine.reference_ms, samples.machine.reference_ms);
   EXPECT_EQ(read.machine.clock, "wall");
+  EXPECT_EQ(read.scenes, samples.scenes);
   EXPECT_EQ(written(read), bytes);
+}
+
+TEST_F(SamplesFile, OfTheBuiltInScenesNamesNone) {
+  EXPECT_EQ(written(random_samples(7, 2)).find("# scenes"), std::string::npos);
+  EXPECT_EQ(read_samples(file).scenes, "");
 }
 
 TEST_F(SamplesFile, TheSameFitComesOutOfIt) {

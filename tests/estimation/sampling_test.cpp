@@ -23,6 +23,39 @@ double fake_ms(const FrameCounts& counts) {
   return 0.3 + 0.02 * static_cast<double>(counts.draws) + 1e-3 * static_cast<double>(counts.triangles);
 }
 
+/// A cube of twelve triangles on [-half, half]^3, seen from both sides.
+Mesh cube_mesh(float half) {
+  std::vector<glm::vec3> corners;
+  for (int axis = 0; axis < 3; ++axis)
+    for (const float side : {-half, half})
+      for (const auto& [u, v] : {std::pair(-half, -half), {half, -half}, {half, half}, {-half, -half}, {half, half}, {-half, half}}) {
+        glm::vec3 corner;
+        corner[axis] = side;
+        corner[(axis + 1) % 3] = u;
+        corner[(axis + 2) % 3] = v;
+        corners.push_back(corner);
+      }
+  return test::mesh_of(corners);
+}
+
+/// 49 soups of 40,000 triangles, each shut into a cube: two million triangles that nobody outside can see.
+Scene hidden_soups() {
+  Scene scene;
+  Rng rng(2);
+  for (const bool is_cube : {false, true})
+    for (int i = 0; i < 49; ++i) {
+      const Mat4 place = test::moved(8.0 * (i % 7), 3.0, 8.0 * static_cast<double>(i / 7));
+      if (i == 0) {
+        test::add_object(scene, is_cube ? cube_mesh(2.5F) : test::random_mesh(rng, 40'000), place, true);
+      } else {
+        scene.objects.push_back(scene.objects.back());
+        scene.objects.back().world_from_object = place;
+      }
+    }
+  update_derived(scene);
+  return scene;
+}
+
 class Sampling : public ::testing::Test {
  protected:
   [[nodiscard]] std::vector<TimedFrame> sample(double seconds, std::uint64_t seed) {
@@ -58,6 +91,19 @@ TEST_F(Sampling, ShowsEveryTerm) {
   for (const TimedFrame& frame : sample(3.0, 2))
     for (std::size_t i = 0; i < kTermCount; ++i) most.value[i] = std::max(most.value[i], frame.features.value[i]);
   for (std::size_t i = 0; i < kTermCount; ++i) EXPECT_GT(most.value[i], 0.0) << term_name(static_cast<Term>(i));
+}
+
+TEST_F(Sampling, DrawsNoMoreThanAVisibleSetWouldLeaveOfALargeScene) {
+  scenes_.front().scene = hidden_soups();
+  ASSERT_GT(scenes_.front().scene.triangle_count(), 1'900'000U);
+  double most_triangles = 0.0, frames = 0.0, designed = 0.0;
+  for (const TimedFrame& frame : sample(15.0, 3)) {
+    (frame.designed ? designed : frames) += 1.0;
+    if (!frame.designed) most_triangles = std::max(most_triangles, frame.features[Term::kTriangles]);
+  }
+  EXPECT_GE(frames, 20.0);
+  EXPECT_LE(most_triangles, 2e5);
+  EXPECT_LE(designed, frames + 1.0) << "the designed scene takes no more turns than the others, however small it is beside them";
 }
 
 TEST_F(Sampling, DependsOnTheSeedAlone) {

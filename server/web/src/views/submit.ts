@@ -59,11 +59,12 @@ async function loadChoices(): Promise<Choices> {
   };
 }
 
+/** What a kind is asked for on the form; a calibration does without a scene, too. */
 const NEEDS: Record<JobKind, { scene: boolean; target: boolean; budget: "needed" | "optional" | "none"; placement: boolean }> = {
   place: { scene: true, target: true, budget: "needed", placement: false },
   survey: { scene: true, target: true, budget: "optional", placement: false },
   sweep: { scene: true, target: true, budget: "none", placement: false },
-  calibrate: { scene: false, target: false, budget: "none", placement: false },
+  calibrate: { scene: true, target: false, budget: "none", placement: false },
   verify: { scene: false, target: false, budget: "none", placement: true },
   bake: { scene: true, target: false, budget: "none", placement: false },
 };
@@ -209,6 +210,8 @@ class SubmitForm {
     this.kind = kind;
     const needs = NEEDS[kind];
     this.parts.scene.hidden = !needs.scene;
+    this.parts.scene.querySelector("legend")!.textContent =
+      kind === "calibrate" ? "Scene that is to be placed (none: built-in cities, for scenes of any kind, with looser bounds)" : "Scene";
     this.parts.target.hidden = !needs.target;
     this.parts.placement.hidden = !needs.placement;
     this.parts.budget.hidden = needs.budget === "none";
