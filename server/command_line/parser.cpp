@@ -143,8 +143,8 @@ void add_input_commands(Grammar& grammar) {
   auto calibrate = grammar.command("calibrate", "fit the rendering-time model of this machine, or check one");
   calibrate.scene(false);
   calibrate.app.get_option("SCENE")->description(
-      "scenes whose frames are timed, and for which the bound is to hold; name the one that is to be placed: its bound is tighter. None: "
-      "built-in cities");
+      "scenes whose frames are timed, and for which the bound is to hold; name the one that is to be placed, so that it rests on its own "
+      "frames. None: built-in cities");
   calibrate.app.add_option("--seconds", calibrate.arguments().seconds, "seconds of timed renders, at most")->check(CLI::Range(1.0, 3600.0));
   calibrate.app
       .add_option("--target-error", calibrate.arguments().target_error,

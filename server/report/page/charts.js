@@ -10,7 +10,7 @@ function axis(label, format, logarithmic) {
   const line = cssColour("--line"), ink = cssColour("--ink");
   const shown = logarithmic ? (chart, splits) => labelledSplits(splits) : (chart, splits) => splits;
   return {
-    label, labelSize: 22, labelFont: "14px system-ui", font: "13px system-ui", size: 76, stroke: ink,
+    label, labelSize: 22, labelFont: "14px system-ui", font: "13px system-ui", size: 66, stroke: ink,
     grid: { stroke: line, width: 1, filter: shown }, ticks: { stroke: line, width: 1, filter: shown }, filter: shown,
     values: (chart, splits) => splits.map((value) => (value === null ? "" : format(value))),
   };

@@ -120,7 +120,7 @@ function curveFigure(name, points) {
   const chart = sorted.length < 2 ? null : lineChart({
     label: `${title}, ${unit}, against run time in seconds`, height: 230, xs: sorted.map((point) => point.seconds),
     x: { label: "seconds", format: (value) => significant(value, 3), log: wide("seconds") },
-    y: { format: (value) => significant(value, 3), log: wide("error") },
+    y: { format: compact, log: wide("error") },
     series: [{ name: unit || "error", colour: "--series-0", points: true, values: sorted.map((point) => point.error) }],
   });
   const columns = [

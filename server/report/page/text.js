@@ -18,6 +18,8 @@ function significant(value, digits) {
   return value.toLocaleString("en", { maximumFractionDigits: Math.min(decimals, 6) });
 }
 
+/// Room for seven digits is none beside an axis: 3.05M.
+const compact = (value) => (Math.abs(value) < 1e4 ? significant(value, 3) : value.toLocaleString("en", { notation: "compact", maximumSignificantDigits: 5 }));
 const milliseconds = (value) => (isNumber(value) ? `${significant(value, 3)} ms` : NONE);
 const seconds = (value) => (isNumber(value) ? `${significant(value, 3)} s` : NONE);
 const count = (value) => (isNumber(value) ? Math.round(value).toLocaleString("en") : NONE);

@@ -211,7 +211,7 @@ class SubmitForm {
     const needs = NEEDS[kind];
     this.parts.scene.hidden = !needs.scene;
     this.parts.scene.querySelector("legend")!.textContent =
-      kind === "calibrate" ? "Scene that is to be placed (none: built-in cities, for scenes of any kind, with looser bounds)" : "Scene";
+      kind === "calibrate" ? "Scene that is to be placed (none: built-in cities, for any scene with textures)" : "Scene";
     this.parts.target.hidden = !needs.target;
     this.parts.placement.hidden = !needs.placement;
     this.parts.budget.hidden = needs.budget === "none";
