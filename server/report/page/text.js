@@ -18,7 +18,7 @@ function significant(value, digits) {
   return value.toLocaleString("en", { maximumFractionDigits: Math.min(decimals, 6) });
 }
 
-/// Room for seven digits is none beside an axis: 3.05M.
+/// For an axis, beside which seven digits have no room: 3.05M.
 const compact = (value) => (Math.abs(value) < 1e4 ? significant(value, 3) : value.toLocaleString("en", { notation: "compact", maximumSignificantDigits: 5 }));
 const milliseconds = (value) => (isNumber(value) ? `${significant(value, 3)} ms` : NONE);
 const seconds = (value) => (isNumber(value) ? `${significant(value, 3)} s` : NONE);
