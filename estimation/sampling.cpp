@@ -227,21 +227,21 @@ class FrameSampler {
   /// model that is fitted on others alone is wrong about those (tests/bench/time_model.md).
   [[nodiscard]] View busy_street_view() {
     View busiest = street_view();
-    double most = likely_ms(busiest);
+    double most = work_at(busiest);
     for (int step = 0; step < kBusySteps; ++step) {
       const View other = beside(step < kBusySteps / 2 ? view_of_heavy_object() : busiest);
-      if (const double asked = likely_ms(other); asked > most) std::tie(busiest, most) = std::pair(other, asked);
+      if (const double asked = work_at(other); asked > most) std::tie(busiest, most) = std::pair(other, asked);
     }
     return busiest;
   }
 
   /// Of what is drawn from there; in large scenes, of what is near.
-  [[nodiscard]] double likely_ms(const View& view) const {
-    if (static_cast<double>(scene_.triangle_count()) <= kLargeScene) return standin::likely_ms(table_.frame(all_objects_, view));
+  [[nodiscard]] double work_at(const View& view) const {
+    if (static_cast<double>(scene_.triangle_count()) <= kLargeScene) return likely_ms(table_.frame(all_objects_, view));
     const double reach_m = kBusyReach * scene_.bounds.diagonal();
     std::vector<std::uint32_t> near = all_objects_;
     std::erase_if(near, [&](std::uint32_t id) { return distance(view.position, scene_.objects[id].bounds) > reach_m; });
-    return standin::likely_ms(table_.frame(near, view));
+    return likely_ms(table_.frame(near, view));
   }
 
   /// At eye height beside an object, with a chance that is its share of the scene's triangles.
